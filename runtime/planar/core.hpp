@@ -42,6 +42,7 @@ struct FlatBody {
   int driver_strikes = 0;    // how often what a script moves has struck it, in this sub-step
   bool kicked = false;       // half of this sub-step's acceleration was taken off
   bool pulled = false;       // a spring or force method acts on it
+  bool flies = false;        // springs pull at it, or at what joints connect it with, and nothing touches it
   bool has_force = false;    // set by scripts
   bool drowsy = false;       // may sleep, touches and is slow
   bool gathered = false;     // for a solution of what touches and is joined
@@ -54,6 +55,7 @@ struct FlatBody {
   b2Body* b2 = nullptr;
   b2Vec2 at{0, 0}, before{0, 0};             // the centre of mass and its velocity at the start of the sub-step
   b2Vec2 kick{0, 0}, kicked_velocity{0, 0};  // what was taken off, and what was left
+  float spin_kick = 0;
   float before_spin = 0;
   b2Vec2 given{0, 0};  // velocity that collisions within Box2D's step have changed it by
   float given_spin = 0;
@@ -254,8 +256,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
 
   // loads.cpp: forces of a sub-step
   void apply_forces(double dt);
-  void apply_joint(FlatJoint& joint, double dt);
-  void apply_spring(FlatSpring& spring, double dt);
+  void apply_springs(double dt);
   void ask_forces();
 
   // step.cpp
@@ -279,6 +280,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void end_cut_short();
   void start_warm(double dt);
   void kick(double dt);
+  void return_spins();
   void resist_rolling(double dt);
   void report_lasting(double moment);
 
@@ -387,6 +389,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
     double slack = 0;  // J, that lifts what is awake by the overlap in which bodies rest
   };
   Balance balance() const;
+  double rounding_of_springs() const;
   bool watch_energy(const Balance& before, double moment);
   GuardAction remedy() const;
   FlatBody* liveliest();

@@ -284,15 +284,19 @@ void Planar::Core::kick(double dt) {
     flat.given_spin = 0;
     lightest = std::min(lightest, flat.mass.mass);
     heaviest = std::max(heaviest, flat.mass.mass);
-    if (!flat.free_flight() || !flat.b2->IsAwake()) continue;
-    b2Vec2 pull = gravity;
-    if (flat.has_force) {
-      const double scale = 1 / (flat.mass.mass * settings.unit);
-      pull += b2Vec2(static_cast<float>(flat.force.x() * scale), static_cast<float>(flat.force.y() * scale));
-    }
+    if (!(flat.free_flight() || flat.flies) || !flat.b2->IsAwake()) continue;
     // Half of the acceleration now and half at the end: Box2D's own step then lies on the parabola.
-    flat.kick = static_cast<float>(dt / 2) * pull;
+    if (!flat.flies) {
+      b2Vec2 pull = gravity;
+      if (flat.has_force) {
+        const double scale = 1 / (flat.mass.mass * settings.unit);
+        pull += b2Vec2(static_cast<float>(flat.force.x() * scale), static_cast<float>(flat.force.y() * scale));
+      }
+      flat.kick = static_cast<float>(dt / 2) * pull;
+      flat.spin_kick = 0;
+    }
     flat.b2->SetLinearVelocity(flat.b2->GetLinearVelocity() - flat.kick);
+    if (flat.flies) flat.b2->SetAngularVelocity(flat.b2->GetAngularVelocity() - flat.spin_kick);
     flat.kicked_velocity = flat.b2->GetLinearVelocity();
     flat.kicked = true;
   }
@@ -360,6 +364,13 @@ void Planar::Core::end_cuts(double dt) {
   last_step = whole;
 }
 
+/// Rotation comes at the end like velocity, which the ledger gives back.
+void Planar::Core::return_spins() {
+  for (FlatBody& flat : slots)
+    if (flat.kicked && flat.flies && flat.body != kNoBody && !flat.set_apart && flat.b2->IsAwake())
+      flat.b2->SetAngularVelocity(flat.b2->GetAngularVelocity() + flat.spin_kick);
+}
+
 /// A step of Box2D. What came near in it, it would solve in the order in which its tree gave it, at impacts that it
 /// moves bodies back to: so these are taken one by one, and new contacts are put where they belong before each.
 void Planar::Core::step_box2d(float dt, int iterations) {
@@ -371,6 +382,7 @@ void Planar::Core::step_box2d(float dt, int iterations) {
   try {
     do order_fresh();
     while (!solve_impacts(*b2, dt, iterations));
+    return_spins();
   } catch (...) {
     b2->SetSubStepping(false);  // it would go on with this step's impacts in the next
     solve_impacts(*b2, dt, iterations);

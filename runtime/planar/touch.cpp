@@ -69,10 +69,15 @@ void Planar::Core::BeginContact(b2Contact* contact) {
     FlatBody& flat = of(const_cast<b2Fixture*>(fixture)->GetBody());
     ++flat.touching;
     if (!flat.kicked) continue;
-    flat.kicked = false;
-    // Not in flight after all. Once Box2D has moved it, it is too late to give back what was taken.
+    // Not in flight after all. Once Box2D has moved it, it is too late to give back what was taken. What springs pull
+    // at gets the other half of their impulse even so: what they connect it with does.
     const b2Vec2 now_at = flat.b2->GetLinearVelocity();
-    if (now_at == flat.kicked_velocity) flat.b2->SetLinearVelocity(now_at + flat.kick);
+    const bool moved = now_at != flat.kicked_velocity;
+    if (moved && flat.flies) continue;
+    flat.kicked = false;
+    if (moved) continue;
+    flat.b2->SetLinearVelocity(now_at + flat.kick);
+    if (flat.flies) flat.b2->SetAngularVelocity(flat.b2->GetAngularVelocity() + flat.spin_kick);
   }
 }
 

@@ -27,6 +27,7 @@ class FakeBehaviour : public Behaviour {
   std::function<bool(ObjectId, ObjectId, const Vector3&, const Vector3&)> on_collided;
   std::function<void(ObjectId, std::string_view)> on_notified;
   std::function<void(const InputEvent&)> on_input;
+  std::function<Vector3(ObjectId, double)> on_force;
   std::uint64_t state = 0;  // saved, loaded and hashed
 
   void iterate(ObjectId agent) override {
@@ -53,6 +54,9 @@ class FakeBehaviour : public Behaviour {
   void input(const InputEvent& event) override {
     note("input", event.object, event.key);
     if (on_input) on_input(event);
+  }
+  Vector3 stage_force(ObjectId agent, double time, std::uint64_t) override {
+    return on_force ? on_force(agent, time) : Vector3(Vector3::Zero());
   }
   void charge(std::uint64_t) override {}
   void expect(std::uint64_t) override {}

@@ -23,18 +23,25 @@ struct Guarded : Flat {
     return static_cast<int>(std::count_if(
         all.begin(), all.end(), [&](const Intervention& one) { return one.reason == reason && one.action == action; }));
   }
-  /// A ball on many springs side by side: each is soft enough to act as it stands, all together are not.
-  ObjectId many_springs(int count) {
+  /// A ball on a spring that a force method makes stiffer within steps, until some time: nobody accounts for that.
+  ObjectId stiffened(double until) {
     physics().set_gravity(Vector3::Zero());
     const ObjectId wall = fixed(Shape::box({1, 1, 1}), 0, 0), ball = this->ball(0.5, 3, 0);
-    constexpr double kSoft = 0.45, kStep = 1.0 / 240;
     SpringDescription spring;
     spring.a = index(wall);
     spring.b = index(ball);
     spring.length = 2.9;
-    spring.strength = kSoft * bodies().mass(index(ball)) / (kStep * kStep);
+    spring.strength = 100;
     spring.damping = 0;
-    for (int i = 0; i < count; ++i) physics().add_spring(spring, ball);
+    const SpringIndex stiffer = physics().add_spring(spring, ball);
+    physics().set_force_method(index(ball), true);
+    script.on_force = [this, stiffer, until](ObjectId, double time) {
+      SpringDescription is = physics().spring(stiffer);
+      constexpr double kSteps = 60;  // in each of which it doubles
+      is.strength = 100 * std::exp2(kSteps * time);
+      if (time < until) physics().set_spring(stiffer, is);
+      return Vector3(Vector3::Zero());
+    };
     return ball;
   }
 };
@@ -42,7 +49,7 @@ struct Guarded : Flat {
 TEST(PlanarGuard, EnergyFromNowhereIsAnEventAndMoreSubStepsEndIt) {
   for (const GuardMode mode : kModes) {
     Guarded flat(mode);
-    const ObjectId ball = flat.many_springs(20);
+    const ObjectId ball = flat.stiffened(0.05);
     const double start = flat.physics().energy().total();
     flat.watch(30);
     EXPECT_EQ(flat.count(GuardReason::Residual, GuardAction::Reported) > 0, mode == GuardMode::Report);
@@ -69,8 +76,8 @@ TEST(PlanarGuard, EnergyFromNowhereIsAnEventAndMoreSubStepsEndIt) {
 TEST(PlanarGuard, WhatGainsEvenSoIsPutToRest) {
   for (const GuardMode mode : {GuardMode::Refine, GuardMode::Rest}) {
     Guarded flat(mode);
-    const ObjectId ball = flat.many_springs(3000);
-    flat.watch(8);
+    const ObjectId ball = flat.stiffened(1);
+    flat.watch(30);
     EXPECT_EQ(flat.count(GuardReason::Residual, GuardAction::Rested) > 0, mode == GuardMode::Rest);
     EXPECT_TRUE(flat.at(ball).allFinite());
     EXPECT_TRUE(flat.velocity(ball).allFinite());
@@ -79,10 +86,22 @@ TEST(PlanarGuard, WhatGainsEvenSoIsPutToRest) {
 
 TEST(PlanarGuard, AJointThatOpensIsReportedAsSuch) {
   Guarded flat(GuardMode::Report, Rung::Fast);
-  const ObjectId rod = flat.box(1, 0.1, 0.5, 0);
-  flat.hinge({}, rod, {0, 0, 0}, {-0.5, 0, 0});
-  flat.bodies().set_force(flat.index(rod), {0, -1e6, 0});
-  flat.watch(10);
+  // A weight 1,000 times as heavy as the links of its chain, which Box2D's sweeps do not hold on this rung.
+  constexpr double kLength = 0.5;
+  constexpr int kLinks = 20;
+  ObjectId last;
+  for (int i = 0; i < kLinks; ++i) {
+    auto shape = Shape::box({kLength, 0.1, 0.1});
+    shape->set_mass(0.1);
+    const ObjectId link = flat.rigid(shape, (i + 0.5) * kLength, 0);
+    flat.hinge(last, link, last ? Vector3(kLength / 2, 0, 0) : Vector3::Zero(), {-kLength / 2, 0, 0});
+    last = link;
+  }
+  auto heavy = Shape::sphere(0.5);
+  heavy->set_mass(100);
+  const ObjectId weight = flat.rigid(heavy, kLinks * kLength + 0.5, 0);
+  flat.hinge(last, weight, {kLength / 2, 0, 0}, {-0.5, 0, 0});
+  flat.watch(300);
   EXPECT_GT(flat.count(GuardReason::OpenJoint, GuardAction::Reported), 0);
   EXPECT_EQ(flat.count(GuardReason::NoSolution, GuardAction::Reported), 0);
   EXPECT_EQ(words_for(GuardReason::OpenJoint), "a joint opens");
@@ -186,10 +205,11 @@ TEST(PlanarGuard, RestingScenesGiveNoEvents) {
 
 TEST(PlanarGuard, WhatItKnowsIsInAnImage) {
   Guarded live(GuardMode::Rest);
-  live.many_springs(20);
+  live.stiffened(0.05);
   live.watch(2);
   const auto image = live.world.save(1);
   Guarded other(GuardMode::Off);
+  other.stiffened(0.05);
   other.world.load(image.data(), image.size(), 1);
   for (int i = 0; i < 60; ++i) {
     live.world.step();
