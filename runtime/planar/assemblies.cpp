@@ -124,6 +124,7 @@ void Planar::Core::follow(BodyIndex leader, const Pose& from) {
 
 /// Numbers of the assemblies that bodies belong to, for the filter of contacts. A body without joints has none.
 void Planar::Core::number_assemblies() {
+  articulations_known = false;
   for (FlatBody& flat : slots) {
     flat.assembly = kNoSlot;
     flat.jointed = flat.body != kNoBody && joints_at.count(flat.body) != 0;

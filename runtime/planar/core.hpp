@@ -7,6 +7,7 @@
 #include <cmath>
 #include <exception>
 #include <map>
+#include <memory>
 #include <optional>
 
 #include "runtime/contact/law.hpp"
@@ -50,13 +51,14 @@ struct FlatBody {
   bool set_apart = false;    // takes no part in the steps of Box2D that are taken now
   bool steps_later = false;  // but it does, unless it is set apart
   bool missed = false;       // what steps came near it while it was set apart: it is to have a contact yet
+  bool solved = false;       // its assembly was solved as a whole in this sub-step
   bool fresh = false;        // it has contacts that are in no order yet
   int touching = 0;          // contacts that touch
   b2Body* b2 = nullptr;
   b2Vec2 at{0, 0}, before{0, 0};             // the centre of mass and its velocity at the start of the sub-step
   b2Vec2 kick{0, 0}, kicked_velocity{0, 0};  // what was taken off, and what was left
   float spin_kick = 0;
-  float before_spin = 0;
+  float before_spin = 0, before_angle = 0;
   b2Vec2 given{0, 0};  // velocity that collisions within Box2D's step have changed it by
   float given_spin = 0;
   std::uint32_t group = kNoSlot;  // the slot that stands for all that it may meet in a sub-step
@@ -316,6 +318,13 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void order_contacts();
   void order_edges();
 
+  // assembly.cpp: assemblies that touch nothing
+  class Assembly;
+  std::pmr::vector<std::unique_ptr<Assembly>> articulations;  // by their first bodies
+  bool articulations_known = false;                           // no body or joint came or went since
+  void number_joints();
+  void move_assemblies(double dt);
+
   // landings.cpp: what Box2D's sweeps solve badly
   class Island;
   void settle_landings(double dt);
@@ -381,6 +390,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   double springs_energy() const;
   double joint_rate(const FlatJoint& joint) const;
   double motor_work(const FlatJoint& joint, double dt) const;
+  bool is_solved(const FlatJoint& joint) const;
   // step_guard.cpp
   bool rest_spoiled(double moment);
   void watch(double moment, bool wrong);

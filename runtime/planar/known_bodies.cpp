@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "runtime/base/error.hpp"
-#include "runtime/planar/core.hpp"
+#include "runtime/planar/assembly.hpp"
 
 namespace breve {
 
@@ -43,7 +43,8 @@ Planar::Core::Core(std::pmr::memory_resource* resource, Bodies& all)
       free_slots(resource),
       slot_of(resource),
       met(resource),
-      scratch(resource) {}
+      scratch(resource),
+      articulations(resource) {}
 
 Planar::Core::~Core() {
   muted = true;  // contacts end with the world

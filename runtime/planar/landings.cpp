@@ -155,7 +155,7 @@ void Planar::Core::settle_landings(double dt) {
   Landings landings(*this, dt);
   for (FlatBody& flat : slots) flat.gathered = false;
   for (FlatBody& flat : slots) {
-    if (flat.body == kNoBody || flat.fixed || flat.gathered || !flat.b2->IsAwake()) continue;
+    if (flat.body == kNoBody || flat.fixed || flat.gathered || flat.solved || !flat.b2->IsAwake()) continue;
     if (!landings.of(flat).suspect()) continue;
     Island island(*this, dt);
     island.gather(flat);

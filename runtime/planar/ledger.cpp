@@ -116,6 +116,13 @@ double Planar::Core::motor_work(const FlatJoint& joint, double dt) const {
   return strength * dt * (joint.rate + joint_rate(joint)) / 2 * settings.unit * settings.unit;
 }
 
+/// Whether its assembly was solved as a whole.
+bool Planar::Core::is_solved(const FlatJoint& joint) const {
+  for (const BodyIndex end : {joint.is.child, joint.is.parent})
+    if (const FlatBody* flat = end == kNoBody ? nullptr : find(end); flat && flat->solved) return true;
+  return false;
+}
+
 /// A body that flies and meets only what does not move may rotate far in the sub-step in which it does, and rebounds
 /// from where it was as that began: energy that contacts gave it is taken from its motion.
 /// @param given  J
@@ -148,7 +155,7 @@ void Planar::Core::end_ledger(double dt) {
     const b2Vec2 v = flat.b2->GetLinearVelocity();
     // Box2D moves by the velocity at the end; what else was moved are overlaps and gaps that it put right.
     const b2Vec2 path = flat.b2->GetWorldCenter() - flat.at - static_cast<float>(dt) * moved_by;
-    put_right -= flat.mass.mass * u * u * double{b2Dot(down, path)};
+    if (!flat.solved) put_right -= flat.mass.mass * u * u * double{b2Dot(down, path)};
     const double w = flat.b2->GetAngularVelocity();
     const Vector2 sum(u * (double{v.x} + flat.before.x), u * (double{v.y} + flat.before.y));
     const double spins = w + double{flat.before_spin};
@@ -160,7 +167,8 @@ void Planar::Core::end_ledger(double dt) {
     const double held =
         (m * change - dt * (force + flat.pull)).dot(sum) / 2 - dt * u * m * gravity.dot(vector_of(moved_by)) +
         (flat.mass.inertia(2, 2) * (w - flat.before_spin) - dt * (flat.torque + flat.twist)) * spins / 2;
-    held_back += held - take_back(flat, held);
+    // Joints do no work on what was solved as a whole: what its energy errs by shows in the residual.
+    if (!flat.solved) held_back += held - take_back(flat, held);
     if (flat.has_force || flat.asked != Vector2::Zero()) forced += dt * (force.dot(sum) + flat.torque * spins) / 2;
   }
   if (!std::isfinite(held_back)) {  // nor is any other work of this sub-step
@@ -169,10 +177,13 @@ void Planar::Core::end_ledger(double dt) {
   }
   pushed += put_right;
   ledger.script_work += forced;
-  double motors = 0;
-  for (const FlatJoint& joint : joints)
-    if (steps(joint)) motors += motor_work(joint, dt);
-  ledger.motor_work += motors;
+  double motors = 0;  // of joints whose assemblies may touch something
+  for (const FlatJoint& joint : joints) {
+    if (!joint.used || !steps(joint)) continue;
+    const double work = motor_work(joint, dt);
+    ledger.motor_work += work;
+    if (!is_solved(joint)) motors += work;
+  }
   ledger.script_work += driven_work;
   // The rest is lost where bodies touch; if it came in, nothing explains it, and it shows in the residual.
   const double lost = std::max(0.0, motors + driven_work - held_back);

@@ -280,6 +280,8 @@ void Planar::Core::kick(double dt) {
     flat.at = flat.b2->GetWorldCenter();
     flat.before = flat.b2->GetLinearVelocity();
     flat.before_spin = flat.b2->GetAngularVelocity();
+    flat.before_angle = flat.b2->GetAngle();
+    flat.solved = false;
     flat.given.SetZero();
     flat.given_spin = 0;
     lightest = std::min(lightest, flat.mass.mass);
@@ -403,6 +405,7 @@ void Planar::Core::step(double dt, bool bounce) {
   const int iterations = iterations_now();
   set_length_of_last_step(*b2, last_step);
   step_box2d(static_cast<float>(dt), iterations);
+  move_assemblies(dt);
   settle_landings(dt);
   end_ledger(dt);
   constexpr double kTooShort = 0.1;  // of a sub-step: single precision tells nothing of what changed in it

@@ -1,0 +1,384 @@
+// Box2D moves links along the tangents of their paths, and then pulls their joints together without changing velocities.
+// Angular momentum and energy of what rotates are lost in this way, and where its sweeps have not converged, links are
+// lifted for nothing. So the sub-step of an assembly that touches nothing is solved again, as RATTLE does (Andersen
+// 1983): impulses of the joints at the old pose, such that all joints hold at the new one, then impulses at the new pose
+// such that the velocities are allowed there. Gravity acts in halves before and after. Momenta are kept exactly, and the
+// energy errs by the square of the sub-step without drift. What motors and limits do is what Box2D has found.
+#include "runtime/planar/assembly.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "runtime/planar/doors.hpp"
+
+namespace breve {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+/// How the velocity of a point along a direction follows from (x, y, angular) of a body.
+JointSystem::Vector row_of(const Vector2& along, const Vector2& arm) { return {along.x(), along.y(), cross(arm, along)}; }
+
+}  // namespace
+
+Planar::Core::Assembly::Assembly(Core& core, BodyIndex first)
+    : core_(core),
+      links_(core.memory),
+      joints_(core.memory),
+      system_(core.memory),
+      before_(core.memory),
+      after_(core.memory),
+      mobility_(core.memory),
+      velocities_(core.memory),
+      moves_(core.memory),
+      rates_(core.memory) {
+  std::pmr::vector<BodyIndex> all(core.memory);
+  core.collect(first, all);
+  Numbers numbers(core.memory);
+  for (const BodyIndex body : all) {
+    numbers.emplace_back(body, static_cast<int>(links_.size()));
+    links_.push_back({body, nullptr});
+  }
+  std::sort(numbers.begin(), numbers.end());
+  collect_joints(numbers);
+  std::pmr::vector<JointSystem::Ends> ends(core.memory);
+  for (const Member& member : joints_) {
+    const JointDescription& is = core.joints[member.joint].is;
+    ends.push_back({number_of(numbers, is.parent), number_of(numbers, is.child)});
+  }
+  planned_ = system_.plan(ends);
+  if (!planned_) return;
+  before_.resize(links_.size());
+  after_.resize(links_.size());
+  mobility_.assign(links_.size(), Vector::Zero());
+  velocities_ = moves_ = mobility_;
+  rates_.assign(joints_.size(), Vector::Zero());
+}
+
+/// -1: it does not move by itself.
+int Planar::Core::Assembly::number_of(const Numbers& numbers, BodyIndex body) {
+  const auto found = std::lower_bound(numbers.begin(), numbers.end(), std::pair(body, 0));
+  return found == numbers.end() || found->first != body ? -1 : found->second;
+}
+
+/// Those of the body that was found last come first: in a tree, from its leaves to its root.
+void Planar::Core::Assembly::collect_joints(const Numbers& numbers) {
+  std::pmr::vector<JointIndex> found(core_.memory);
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const auto at = core_.joints_at.find(links_[i].body);
+    if (at == core_.joints_at.end()) continue;
+    for (const JointIndex joint : at->second) {
+      const JointDescription& is = core_.joints[joint].is;
+      // A joint belongs to the body of its two that was found later.
+      const BodyIndex other = is.parent == links_[i].body ? is.child : is.parent;
+      if (number_of(numbers, other) < static_cast<int>(i)) found.push_back(joint);
+    }
+  }
+  for (auto joint = found.rbegin(); joint != found.rend(); ++joint) {
+    const FlatJoint& entry = core_.joints[*joint];
+    Member member;
+    member.joint = *joint;
+    member.serial = entry.serial;
+    member.kind = entry.is.kind;
+    joints_.push_back(member);
+  }
+}
+
+bool Planar::Core::Assembly::connects_script(const JointDescription& is) const {
+  for (const BodyIndex end : {is.parent, is.child})
+    if (const FlatBody* flat = end == kNoBody ? nullptr : core_.find(end); flat && flat->driven) return true;
+  return false;
+}
+
+/// Whether all are awake and step, and nothing but joints and forces acted on them.
+bool Planar::Core::Assembly::may_move() {
+  if (!planned_) return false;
+  for (Link& link : links_) {
+    link.flat = core_.find(link.body);
+    const FlatBody* flat = link.flat;
+    if (!flat || flat->fixed || flat->set_apart || flat->touching > 0 || !flat->b2->IsAwake()) return false;
+    if (flat->given != b2Vec2(0, 0) || flat->given_spin != 0 || !is_finite(*flat->b2)) return false;
+  }
+  return std::all_of(joints_.begin(), joints_.end(), [this](const Member& member) {
+    const FlatJoint& joint = core_.joints[member.joint];
+    return joint.used && joint.serial == member.serial && joint.b2 && !connects_script(joint.is);
+  });
+}
+
+void Planar::Core::Assembly::load() {
+  const double u = core_.settings.unit;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const FlatBody& flat = *links_[i].flat;
+    before_[i] = FlatPose(vector_of(flat.at), double{flat.before_angle});
+    const double inverse = 1 / flat.mass.mass;
+    mobility_[i] = Vector(inverse, inverse, u * u / flat.mass.inertia(2, 2));
+    const b2Vec2 v = flat.b2->GetLinearVelocity();
+    velocities_[i] = Vector(double{v.x}, double{v.y}, double{flat.b2->GetAngularVelocity()});
+  }
+}
+
+void Planar::Core::Assembly::load_joint(std::size_t index, double dt) {
+  Member& member = joints_[index];
+  const FlatJoint& joint = core_.joints[member.joint];
+  const JointDescription& is = joint.is;
+  const double u = core_.settings.unit;
+  const FlatBody* parent = is.parent == kNoBody ? nullptr : core_.find(is.parent);
+  const FlatBody* child = core_.find(is.child);
+  const auto center = [](const FlatBody* flat) {
+    return flat ? vector_of(flat->b2->GetLocalCenter()) : Vector2(Vector2::Zero());
+  };
+  member.parent_point = is.parent_point.head<2>() / u - center(parent);
+  member.child_point = is.child_point.head<2>() / u - center(child);
+  member.axis = is.normal.head<2>();
+  member.reference = double{reference_of(joint)};
+  member.parent = parent ? pose_of(parent) : FlatPose();
+  member.child = pose_of(child);
+  member.impulse.setZero();
+  member.gap = gap_of(index, before_);
+  note_drive(member, dt);
+}
+
+FlatPose Planar::Core::Assembly::pose_of(const FlatBody* flat) const {
+  return {vector_of(flat->b2->GetWorldCenter()), double{flat->b2->GetAngle()}};
+}
+
+/// Whether a motor below its strength, or a limit, has decided the rate of a joint's own axis.
+void Planar::Core::Assembly::note_drive(Member& member, double dt) {
+  constexpr double kFull = 0.999;  // of its strength: a force
+  const FlatJoint& joint = core_.joints[member.joint];
+  member.locked = false;
+  member.low = -kNone;
+  member.high = kNone;
+  if (member.kind == JointKind::Fixed) return;
+  const WarmJoint warm = core_.warm_of(joint);
+  const auto note = [&](const auto* b, double strength) {
+    const bool holds = b->IsMotorEnabled() && std::abs(double{warm.motor}) < kFull * strength * dt;
+    if (b->IsLimitEnabled() && warm.lower > 0) member.low = double{b->GetLowerLimit()};
+    if (b->IsLimitEnabled() && warm.upper > 0) member.high = double{b->GetUpperLimit()};
+    member.locked = holds || member.low > -kNone || member.high < kNone;
+  };
+  if (member.kind == JointKind::Revolute) {
+    const auto* b = static_cast<const b2RevoluteJoint*>(joint.b2);
+    note(b, double{b->GetMaxMotorTorque()});
+  } else {
+    const auto* b = static_cast<const b2PrismaticJoint*>(joint.b2);
+    note(b, double{const_cast<b2PrismaticJoint*>(b)->GetMaxMotorForce()});
+  }
+}
+
+std::pair<FlatPose, FlatPose> Planar::Core::Assembly::ends_of(std::size_t index,
+                                                              std::span<const FlatPose> poses) const {
+  const JointSystem::Ends& ends = system_.ends(index);
+  return {ends.parent < 0 ? joints_[index].parent : poses[static_cast<std::size_t>(ends.parent)],
+          ends.child < 0 ? joints_[index].child : poses[static_cast<std::size_t>(ends.child)]};
+}
+
+/// By how much a joint is open: length units, and rad where it holds rotation.
+Planar::Core::Assembly::Vector Planar::Core::Assembly::gap_of(std::size_t index, std::span<const FlatPose> poses) const {
+  const Member& member = joints_[index];
+  const auto [parent, child] = ends_of(index, poses);
+  const Vector2 way = child.point(member.child_point) - parent.point(member.parent_point);
+  const double rotation = child.angle - parent.angle - member.reference;
+  switch (member.kind) {
+    case JointKind::Revolute: return {way.x(), way.y(), 0};
+    case JointKind::Prismatic: return {way.dot(left_of(parent.rotated(member.axis))), 0, rotation};
+    default: return {way.x(), way.y(), rotation};
+  }
+}
+
+/// Of its own axis, as Box2D counts it.
+double Planar::Core::Assembly::travel_of(std::size_t index, std::span<const FlatPose> poses) const {
+  const Member& member = joints_[index];
+  const auto [parent, child] = ends_of(index, poses);
+  if (member.kind == JointKind::Revolute) return child.angle - parent.angle - member.reference;
+  const Vector2 way = child.point(member.child_point) - parent.point(member.parent_point);
+  return way.dot(parent.rotated(member.axis));
+}
+
+void Planar::Core::Assembly::linearize(std::span<const FlatPose> poses) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const Member& member = joints_[i];
+    const auto [parent, child] = ends_of(i, poses);
+    JointSystem::Rates& rates = system_.rates(i);
+    rates.parent.setZero();
+    rates.child.setZero();
+    const Vector2 arm = child.rotated(member.child_point);
+    Vector2 parent_arm = parent.rotated(member.parent_point), first(1, 0), second(0, 1);
+    const bool slides = member.kind == JointKind::Prismatic;
+    if (slides) {  // its axes rotate with the parent
+      parent_arm = child.center + arm - parent.center;
+      second = parent.rotated(member.axis);
+      first = left_of(second);
+    }
+    rates.child.row(0) = row_of(first, arm);
+    rates.parent.row(0) = -row_of(first, parent_arm);
+    if (!slides || member.locked) {
+      rates.child.row(1) = row_of(second, arm);
+      rates.parent.row(1) = -row_of(second, parent_arm);
+    }
+    if (member.kind == JointKind::Revolute && !member.locked) continue;
+    rates.child(2, 2) = 1;
+    rates.parent(2, 2) = -1;
+  }
+  system_.factor(mobility_);
+}
+
+/// Half of what gravity gives in the sub-step, with a sign.
+void Planar::Core::Assembly::add_gravity(double dt) {
+  const Vector2 change = dt / 2 * vector_of(core_.b2->GetGravity());
+  for (Vector& v : velocities_) v.head<2>() += change;
+}
+
+void Planar::Core::Assembly::advance_poses(double dt) {
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Vector& v = velocities_[i];
+    after_[i] = FlatPose(before_[i].center + dt * v.head<2>(), before_[i].angle + dt * v[2]);
+  }
+}
+
+/// Takes the rates that the joints have beyond what they allow off all velocities.
+void Planar::Core::Assembly::give_rates() {
+  for (Vector& rate : rates_) rate = -rate;
+  system_.solve(rates_);
+  system_.spread(rates_, velocities_);
+  for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i].impulse += rates_[i];
+}
+
+/// Impulses at the old pose, such that the joints are as open at the new one as they were. Whether they were found.
+bool Planar::Core::Assembly::find_path(double dt) {
+  constexpr int kMost = 6;             // times
+  constexpr double kExact = 1e-7;      // length units or rad
+  constexpr double kGood = 1e-3;       // the same: the rest is closed afterwards
+  constexpr double kConverges = 0.7;
+  double last = kNone;
+  for (int i = 0; i < kMost; ++i) {
+    advance_poses(dt);
+    double worst = 0;
+    for (std::size_t k = 0; k < joints_.size(); ++k) {
+      const Member& member = joints_[k];
+      rates_[k] = (gap_of(k, after_) - member.gap) / dt;
+      if (member.locked)
+        rates_[k][member.free_row()] = system_.rate_of(k, velocities_)[member.free_row()] - member.target;
+      worst = std::max(worst, rates_[k].cwiseAbs().maxCoeff());
+    }
+    if (worst * dt < kExact) return true;
+    if (!(worst < kConverges * last)) return worst * dt < kGood;
+    last = worst;
+    give_rates();
+  }
+  return last * dt < kGood;
+}
+
+/// What joints are open at the new pose is closed there, as Box2D does it: positions move and velocities do not.
+void Planar::Core::Assembly::close_gaps() {
+  constexpr double kOpen = 1e-5;   // length units or rad
+  constexpr double kMost = 0.2;    // in one sub-step
+  double worst = 0;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const Member& member = joints_[i];
+    Vector& gap = rates_[i] = gap_of(i, after_);
+    if (member.locked) {
+      const double travel = travel_of(i, after_);
+      gap[member.free_row()] = std::min(travel - member.low, 0.0) + std::max(travel - member.high, 0.0);
+    }
+    worst = std::max(worst, gap.cwiseAbs().maxCoeff());
+  }
+  if (!(worst > kOpen)) return;
+  const double part = worst > kMost ? kMost / worst : 1;
+  for (Vector& gap : rates_) gap *= -part;
+  system_.solve(rates_);
+  std::fill(moves_.begin(), moves_.end(), Vector::Zero());
+  system_.spread(rates_, moves_);
+  for (std::size_t i = 0; i < links_.size(); ++i)
+    after_[i] = FlatPose(after_[i].center + moves_[i].head<2>(), after_[i].angle + moves_[i][2]);
+}
+
+/// Impulses at the new pose, after which its joints allow the velocities.
+void Planar::Core::Assembly::allow(double dt) {
+  add_gravity(dt);
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const Member& member = joints_[i];
+    rates_[i] = system_.rate_of(i, velocities_);
+    if (member.locked) rates_[i][member.free_row()] -= member.target;
+  }
+  give_rates();
+}
+
+void Planar::Core::Assembly::keep(double dt) {
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    FlatBody& flat = *links_[i].flat;
+    b2Body& b = *flat.b2;
+    const FlatPose& at = after_[i];
+    const b2Vec2 center(static_cast<float>(at.center.x()), static_cast<float>(at.center.y()));
+    const auto angle = static_cast<float>(at.angle);
+    if (center != b.GetWorldCenter() || angle != b.GetAngle())
+      b.SetTransform(center - b2Mul(b2Rot(angle), b.GetLocalCenter()), angle);
+    const float slow = sleep_time(b);  // a velocity that is set would begin it anew
+    b.SetLinearVelocity(b2Vec2(static_cast<float>(velocities_[i].x()), static_cast<float>(velocities_[i].y())));
+    b.SetAngularVelocity(static_cast<float>(velocities_[i].z()));
+    sleep_time(b) = slow;
+    flat.solved = true;
+  }
+  for (const Member& member : joints_) keep_impulses(member, dt);
+}
+
+/// The next step of Box2D starts from the impulses of this one.
+void Planar::Core::Assembly::keep_impulses(const Member& member, double dt) {
+  FlatJoint& joint = core_.joints[member.joint];
+  WarmJoint warm = core_.warm_of(joint);
+  const Vector& more = member.impulse;
+  warm.x += static_cast<float>(more.x());
+  if (member.kind == JointKind::Prismatic)
+    warm.y += static_cast<float>(more.z());
+  else
+    warm.y += static_cast<float>(more.y());
+  if (member.kind == JointKind::Fixed) warm.angular += static_cast<float>(more.z());
+  if (member.locked) {
+    const auto driven = static_cast<float>(more[member.free_row()]);
+    const double u = core_.settings.unit;
+    const auto most = static_cast<float>(joint.drive.strength_limit * dt /
+                                         (member.kind == JointKind::Revolute ? u * u : u));
+    if (member.low > -kNone)
+      warm.lower = std::max(warm.lower + driven, 0.0F);
+    else if (member.high < kNone)
+      warm.upper = std::max(warm.upper - driven, 0.0F);
+    else
+      warm.motor = std::clamp(warm.motor + driven, -most, most);
+  }
+  core_.set_warm(joint, warm);
+}
+
+void Planar::Core::Assembly::move(double dt) {
+  if (!may_move()) return;
+  load();
+  for (std::size_t i = 0; i < joints_.size(); ++i) load_joint(i, dt);
+  linearize(before_);
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+    if (Member& member = joints_[i]; member.locked)
+      member.target = system_.rate_of(i, velocities_)[member.free_row()];
+  add_gravity(-dt);
+  if (!find_path(dt)) return;
+  linearize(after_);
+  close_gaps();
+  allow(dt);
+  const bool finite = std::all_of(velocities_.begin(), velocities_.end(), [](const Vector& v) { return v.allFinite(); });
+  if (finite) keep(dt);
+}
+
+void Planar::Core::number_joints() {
+  articulations.clear();
+  for (std::uint32_t i = 0; i < slots.size(); ++i)
+    if (slots[i].body != kNoBody && !slots[i].fixed && slots[i].assembly == i)
+      articulations.push_back(std::make_unique<Assembly>(*this, slots[i].body));
+  articulations_known = true;
+}
+
+void Planar::Core::move_assemblies(double dt) {
+  if (members_changed) return;  // a handler has changed them in this step
+  if (!articulations_known) number_joints();
+  for (const std::unique_ptr<Assembly>& one : articulations) one->move(dt);
+}
+
+}  // namespace breve
