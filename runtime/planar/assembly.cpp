@@ -3,7 +3,7 @@
 // lifted for nothing. So the sub-step of an assembly that touches nothing is solved again, as RATTLE does (Andersen
 // 1983): impulses of the joints at the old pose, such that all joints hold at the new one, then impulses at the new pose
 // such that the velocities are allowed there. Gravity acts in halves before and after. Momenta are kept exactly, and the
-// energy errs by the square of the sub-step without drift. What motors and limits do is what Box2D has found.
+// energy errs by the square of the sub-step without drift. Which motors and limits hold is what Box2D has found.
 #include "runtime/planar/assembly.hpp"
 
 #include <algorithm>
@@ -33,6 +33,7 @@ Planar::Core::Assembly::Assembly(Core& core, BodyIndex first)
       mobility_(core.memory),
       velocities_(core.memory),
       moves_(core.memory),
+      forces_(core.memory),
       rates_(core.memory) {
   std::pmr::vector<BodyIndex> all(core.memory);
   core.collect(first, all);
@@ -53,7 +54,7 @@ Planar::Core::Assembly::Assembly(Core& core, BodyIndex first)
   before_.resize(links_.size());
   after_.resize(links_.size());
   mobility_.assign(links_.size(), Vector::Zero());
-  velocities_ = moves_ = mobility_;
+  velocities_ = moves_ = forces_ = mobility_;
   rates_.assign(joints_.size(), Vector::Zero());
 }
 
@@ -107,16 +108,32 @@ bool Planar::Core::Assembly::may_move() {
   });
 }
 
-void Planar::Core::Assembly::load() {
+void Planar::Core::Assembly::load(double dt) {
   const double u = core_.settings.unit;
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const FlatBody& flat = *links_[i].flat;
-    before_[i] = FlatPose(vector_of(flat.at), double{flat.before_angle});
     const double inverse = 1 / flat.mass.mass;
     mobility_[i] = Vector(inverse, inverse, u * u / flat.mass.inertia(2, 2));
-    const b2Vec2 v = flat.b2->GetLinearVelocity();
-    velocities_[i] = Vector(double{v.x}, double{v.y}, double{flat.b2->GetAngularVelocity()});
+    const Vector2 force = (flat.force + flat.asked + flat.pull) / u;
+    forces_[i] = mobility_[i].cwiseProduct(Vector(force.x(), force.y(), (flat.torque + flat.twist) / (u * u)));
+    before_[i] = pose_before(flat);
+    links_[i].eccentric = false;
   }
+  for (std::size_t i = 0; i < joints_.size(); ++i) load_joint(i, dt);
+  for (std::size_t i = 0; i < joints_.size(); ++i) aim(i, dt);
+}
+
+/// A limit is reached at the end of the sub-step and stops its joint there; a motor keeps its speed.
+void Planar::Core::Assembly::aim(std::size_t index, double dt) {
+  Member& member = joints_[index];
+  if (!member.locked || !member.limited()) return;
+  const double travel = travel_of(index, before_);
+  member.target = member.low > -kNone ? -std::max(travel - member.low, 0.0) / dt
+                                      : std::max(member.high - travel, 0.0) / dt;
+}
+
+FlatPose Planar::Core::Assembly::pose_before(const FlatBody& flat) {
+  return {vector_of(flat.at), double{flat.before_angle}};
 }
 
 void Planar::Core::Assembly::load_joint(std::size_t index, double dt) {
@@ -133,15 +150,21 @@ void Planar::Core::Assembly::load_joint(std::size_t index, double dt) {
   member.child_point = is.child_point.head<2>() / u - center(child);
   member.axis = is.normal.head<2>();
   member.reference = double{reference_of(joint)};
-  member.parent = parent ? pose_of(parent) : FlatPose();
-  member.child = pose_of(child);
-  member.impulse.setZero();
-  member.gap = gap_of(index, before_);
+  const auto pose_now = [](const FlatBody* flat) {
+    if (!flat) return FlatPose();
+    return FlatPose(vector_of(flat->b2->GetWorldCenter()), double{flat->b2->GetAngle()});
+  };
+  const JointSystem::Ends& ends = system_.ends(index);
+  if (ends.parent < 0) member.parent = pose_now(parent);
+  if (ends.child < 0) member.child = pose_now(child);
+  for (const auto& [end, point] : {std::pair{ends.parent, &member.parent_point}, {ends.child, &member.child_point}}) {
+    if (end < 0) continue;
+    // Of what a joint holds near its center, the joint does not move as it rotates.
+    constexpr double kNear = 0.01;
+    const Vector& m = mobility_[static_cast<std::size_t>(end)];
+    if (point->squaredNorm() * m[2] > kNear * m[0]) links_[static_cast<std::size_t>(end)].eccentric = true;
+  }
   note_drive(member, dt);
-}
-
-FlatPose Planar::Core::Assembly::pose_of(const FlatBody* flat) const {
-  return {vector_of(flat->b2->GetWorldCenter()), double{flat->b2->GetAngle()}};
 }
 
 /// Whether a motor below its strength, or a limit, has decided the rate of a joint's own axis.
@@ -149,6 +172,7 @@ void Planar::Core::Assembly::note_drive(Member& member, double dt) {
   constexpr double kFull = 0.999;  // of its strength: a force
   const FlatJoint& joint = core_.joints[member.joint];
   member.locked = false;
+  member.load = 0;
   member.low = -kNone;
   member.high = kNone;
   if (member.kind == JointKind::Fixed) return;
@@ -158,6 +182,9 @@ void Planar::Core::Assembly::note_drive(Member& member, double dt) {
     if (b->IsLimitEnabled() && warm.lower > 0) member.low = double{b->GetLowerLimit()};
     if (b->IsLimitEnabled() && warm.upper > 0) member.high = double{b->GetUpperLimit()};
     member.locked = holds || member.low > -kNone || member.high < kNone;
+    member.strength = b->IsMotorEnabled() ? strength * dt : 0;
+    member.target = double{b->GetMotorSpeed()};
+    if (!member.locked) member.load = double{warm.motor};
   };
   if (member.kind == JointKind::Revolute) {
     const auto* b = static_cast<const b2RevoluteJoint*>(joint.b2);
@@ -225,10 +252,32 @@ void Planar::Core::Assembly::linearize(std::span<const FlatPose> poses) {
   system_.factor(mobility_);
 }
 
-/// Half of what gravity gives in the sub-step, with a sign.
-void Planar::Core::Assembly::add_gravity(double dt) {
-  const Vector2 change = dt / 2 * vector_of(core_.b2->GetGravity());
-  for (Vector& v : velocities_) v.head<2>() += change;
+/// The impulses of h seconds: half of gravity, all of the forces, and of motors that are at their strength.
+/// @param part  of the sub-step that this is
+void Planar::Core::Assembly::add_loads(double h, double part) {
+  const Vector2 fall = h / 2 * vector_of(core_.b2->GetGravity());
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    velocities_[i] += h * forces_[i];
+    velocities_[i].head<2>() += fall;
+  }
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (joints_[i].load == 0) continue;
+    const auto [of_parent, of_child] = axis_rows(i, before_);
+    const JointSystem::Ends& ends = system_.ends(i);
+    for (const auto& [end, row] : {std::pair{ends.parent, &of_parent}, {ends.child, &of_child}})
+      if (const auto link = static_cast<std::size_t>(end); end >= 0)
+        velocities_[link] += part * joints_[i].load * mobility_[link].cwiseProduct(*row);
+  }
+}
+
+/// How the rate of the axis of its own follows from the velocities of parent and child.
+std::pair<Planar::Core::Assembly::Vector, Planar::Core::Assembly::Vector> Planar::Core::Assembly::axis_rows(std::size_t index,
+                                                            std::span<const FlatPose> poses) const {
+  if (joints_[index].kind == JointKind::Revolute) return {-Vector::UnitZ(), Vector::UnitZ()};
+  const Member& member = joints_[index];
+  const auto [parent, child] = ends_of(index, poses);
+  const Vector2 arm = child.rotated(member.child_point), axis = parent.rotated(member.axis);
+  return {-row_of(axis, child.center + arm - parent.center), row_of(axis, arm)};
 }
 
 void Planar::Core::Assembly::advance_poses(double dt) {
@@ -248,9 +297,9 @@ void Planar::Core::Assembly::give_rates() {
 
 /// Impulses at the old pose, such that the joints are as open at the new one as they were. Whether they were found.
 bool Planar::Core::Assembly::find_path(double dt) {
-  constexpr int kMost = 6;             // times
+  constexpr int kMost = 12;             // times
   constexpr double kExact = 1e-7;      // length units or rad
-  constexpr double kGood = 1e-3;       // the same: the rest is closed afterwards
+  constexpr double kGood = 1e-5;       // the same: the rest is closed afterwards
   constexpr double kConverges = 0.7;
   double last = kNone;
   for (int i = 0; i < kMost; ++i) {
@@ -271,10 +320,8 @@ bool Planar::Core::Assembly::find_path(double dt) {
   return last * dt < kGood;
 }
 
-/// What joints are open at the new pose is closed there, as Box2D does it: positions move and velocities do not.
-void Planar::Core::Assembly::close_gaps() {
-  constexpr double kOpen = 1e-5;   // length units or rad
-  constexpr double kMost = 0.2;    // in one sub-step
+/// By how much joints are open at the new pose, the widest; limits count where their joints are at them.
+double Planar::Core::Assembly::find_gaps() {
   double worst = 0;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const Member& member = joints_[i];
@@ -285,33 +332,52 @@ void Planar::Core::Assembly::close_gaps() {
     }
     worst = std::max(worst, gap.cwiseAbs().maxCoeff());
   }
-  if (!(worst > kOpen)) return;
-  const double part = worst > kMost ? kMost / worst : 1;
-  for (Vector& gap : rates_) gap *= -part;
-  system_.solve(rates_);
-  std::fill(moves_.begin(), moves_.end(), Vector::Zero());
-  system_.spread(rates_, moves_);
-  for (std::size_t i = 0; i < links_.size(); ++i)
-    after_[i] = FlatPose(after_[i].center + moves_[i].head<2>(), after_[i].angle + moves_[i][2]);
+  return worst;
+}
+
+/// What joints are open at the new pose is closed there, as Box2D does it: positions move and velocities do not.
+void Planar::Core::Assembly::close_gaps() {
+  constexpr double kOpen = 1e-5;      // length units or rad
+  constexpr double kMost = 0.1;       // the same: what is moved at once
+  constexpr int kMostRounds = 3;      // of Newton's method
+  for (int round = 0; round < kMostRounds && find_gaps() > kOpen; ++round) {
+    for (Vector& gap : rates_) gap = -gap;
+    system_.solve(rates_);
+    std::fill(moves_.begin(), moves_.end(), Vector::Zero());
+    system_.spread(rates_, moves_);
+    double farthest = 0;
+    for (const Vector& move : moves_) farthest = std::max(farthest, move.cwiseAbs().maxCoeff());
+    const double part = farthest > kMost ? kMost / farthest : 1;
+    for (std::size_t i = 0; i < links_.size(); ++i)
+      after_[i] = FlatPose(after_[i].center + part * moves_[i].head<2>(), after_[i].angle + part * moves_[i][2]);
+    linearize(after_);
+  }
 }
 
 /// Impulses at the new pose, after which its joints allow the velocities.
-void Planar::Core::Assembly::allow(double dt) {
-  add_gravity(dt);
+/// @param ends  the sub-step, where limits are reached
+void Planar::Core::Assembly::allow(double h, bool ends) {
+  const Vector2 fall = h / 2 * vector_of(core_.b2->GetGravity());
+  for (Vector& v : velocities_) v.head<2>() += fall;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const Member& member = joints_[i];
     rates_[i] = system_.rate_of(i, velocities_);
-    if (member.locked) rates_[i][member.free_row()] -= member.target;
+    if (member.locked && !(ends && member.limited())) rates_[i][member.free_row()] -= member.target;
   }
   give_rates();
 }
 
 void Planar::Core::Assembly::keep(double dt) {
+  constexpr double kSingle = 1e-7;  // what single precision leaves of a number
+  const double unseen = kSingle * dt * double{core_.b2->GetGravity().Length()};
   for (std::size_t i = 0; i < links_.size(); ++i) {
     FlatBody& flat = *links_[i].flat;
     b2Body& b = *flat.b2;
     const FlatPose& at = after_[i];
     const b2Vec2 center(static_cast<float>(at.center.x()), static_cast<float>(at.center.y()));
+    // What rests stays at rest, but for what single precision makes of the loads.
+    for (double& v : velocities_[i])
+      if (std::abs(v) < unseen) v = 0;
     const auto angle = static_cast<float>(at.angle);
     if (center != b.GetWorldCenter() || angle != b.GetAngle())
       b.SetTransform(center - b2Mul(b2Rot(angle), b.GetLocalCenter()), angle);
@@ -321,50 +387,102 @@ void Planar::Core::Assembly::keep(double dt) {
     sleep_time(b) = slow;
     flat.solved = true;
   }
-  for (const Member& member : joints_) keep_impulses(member, dt);
+  for (const Member& member : joints_) keep_impulses(member);
 }
 
 /// The next step of Box2D starts from the impulses of this one.
-void Planar::Core::Assembly::keep_impulses(const Member& member, double dt) {
-  FlatJoint& joint = core_.joints[member.joint];
-  WarmJoint warm = core_.warm_of(joint);
-  const Vector& more = member.impulse;
-  warm.x += static_cast<float>(more.x());
-  if (member.kind == JointKind::Prismatic)
-    warm.y += static_cast<float>(more.z());
-  else
-    warm.y += static_cast<float>(more.y());
-  if (member.kind == JointKind::Fixed) warm.angular += static_cast<float>(more.z());
-  if (member.locked) {
-    const auto driven = static_cast<float>(more[member.free_row()]);
-    const double u = core_.settings.unit;
-    const auto most = static_cast<float>(joint.drive.strength_limit * dt /
-                                         (member.kind == JointKind::Revolute ? u * u : u));
-    if (member.low > -kNone)
-      warm.lower = std::max(warm.lower + driven, 0.0F);
-    else if (member.high < kNone)
-      warm.upper = std::max(warm.upper - driven, 0.0F);
-    else
-      warm.motor = std::clamp(warm.motor + driven, -most, most);
+void Planar::Core::Assembly::keep_impulses(const Member& member) {
+  const Vector& given = member.impulse;
+  WarmJoint warm;
+  warm.x = static_cast<float>(given.x());
+  warm.y = static_cast<float>(member.kind == JointKind::Prismatic ? given.z() : given.y());
+  if (member.kind == JointKind::Fixed) warm.angular = static_cast<float>(given.z());
+  const auto driven = static_cast<float>(member.locked ? given[member.free_row()] : member.load);
+  if (member.locked && member.low > -kNone)
+    warm.lower = std::max(driven, 0.0F);
+  else if (member.locked && member.high < kNone)
+    warm.upper = std::max(-driven, 0.0F);
+  else if (member.kind != JointKind::Fixed)
+    warm.motor = driven;
+  core_.set_warm(core_.joints[member.joint], warm);
+}
+
+/// Motors that would need more than their strength, and limits that would pull, let go. Whether there were any.
+bool Planar::Core::Assembly::release() {
+  bool any = false;
+  for (Member& member : joints_) {
+    if (!member.locked || member.kind == JointKind::Fixed) continue;
+    const double given = member.impulse[member.free_row()];
+    const bool lower = member.low > -kNone, upper = member.high < kNone;
+    const bool pulls = (lower && !upper && given < 0) || (upper && !lower && given > 0);
+    const bool weak = !lower && !upper && std::abs(given) > member.strength;
+    if (!pulls && !weak) continue;
+    member.locked = false;
+    member.load = std::copysign(weak ? member.strength : 0, given);
+    any = true;
   }
-  core_.set_warm(joint, warm);
+  return any;
+}
+
+/// One of the parts in which what rotates far takes a sub-step. Whether it has a solution.
+bool Planar::Core::Assembly::take(double h, double part, bool last) {
+  linearize(before_);
+  add_loads(h, part);
+  for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i].gap = gap_of(i, before_);
+  if (!find_path(h)) return false;
+  work_ += work_along_path(h);
+  linearize(after_);
+  close_gaps();
+  allow(h, last);
+  return std::all_of(velocities_.begin(), velocities_.end(), [](const Vector& v) { return v.allFinite(); });
+}
+
+/// From where the sub-step began to its end.
+bool Planar::Core::Assembly::take_all(double dt, int parts) {
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const FlatBody& flat = *links_[i].flat;
+    before_[i] = pose_before(flat);
+    velocities_[i] = Vector(double{flat.before.x}, double{flat.before.y}, double{flat.before_spin});
+  }
+  for (Member& member : joints_) member.impulse.setZero();
+  linearize(before_);
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    rates_[i] = system_.rate_of(i, velocities_);
+    if (joints_[i].locked) rates_[i][joints_[i].free_row()] = 0;
+  }
+  give_rates();  // what contacts left, the joints may not allow
+  const double began = kinetic();
+  work_ = 0;
+  for (int i = 0; i < parts; ++i) {
+    if (i > 0) before_.swap(after_);
+    if (!take(dt / parts, 1.0 / parts, i + 1 == parts)) return false;
+  }
+  settle_energy(began);
+  return true;
 }
 
 void Planar::Core::Assembly::move(double dt) {
+  constexpr double kRotation = 0.2;                 // rad, of a part
+  constexpr int kMostParts = 32, kMostReleases = 4;  // more parts only where there is no other solution
   if (!may_move()) return;
-  load();
-  for (std::size_t i = 0; i < joints_.size(); ++i) load_joint(i, dt);
-  linearize(before_);
-  for (std::size_t i = 0; i < joints_.size(); ++i)
-    if (Member& member = joints_[i]; member.locked)
-      member.target = system_.rate_of(i, velocities_)[member.free_row()];
-  add_gravity(-dt);
-  if (!find_path(dt)) return;
-  linearize(after_);
-  close_gaps();
-  allow(dt);
-  const bool finite = std::all_of(velocities_.begin(), velocities_.end(), [](const Vector& v) { return v.allFinite(); });
-  if (finite) keep(dt);
+  load(dt);
+  double fastest = 0;
+  for (const Link& link : links_)
+    if (link.eccentric) fastest = std::max(fastest, std::abs(double{link.flat->before_spin}));
+  int parts = 1;
+  while (parts < kMostParts / 4 && fastest * dt > kRotation * parts) parts *= 2;
+  static const bool old = getenv("OLDZ");
+  if (old) return;
+  for (int i = 0; parts <= kMostParts; ++i) {
+    if (!take_all(dt, parts)) {
+      parts *= 2;
+      continue;
+    }
+    if (i < kMostReleases && release()) continue;
+    const double u = core_.settings.unit;
+    core_.ledger.limit_loss += lost_ * u * u;
+    return keep(dt);
+  }
 }
 
 void Planar::Core::number_joints() {

@@ -31,6 +31,7 @@ class Planar::Core::Assembly {
   struct Link {
     BodyIndex body = kNoBody;
     FlatBody* flat = nullptr;
+    bool eccentric = false;  // a joint holds it away from its center of mass
   };
   struct Member {
     JointIndex joint = kNoJoint;
@@ -42,8 +43,11 @@ class Planar::Core::Assembly {
     FlatPose parent, child;                                                // of bodies that do not move by themselves
     bool locked = false;    // its motor or a limit decides how it moves
     double low = 0, high = 0;  // limits that it is at, rad or length units
-    double target = 0;      // the rate that motor or limit give it
+    double target = 0;       // the rate that motor or limit give it
+    double load = 0;         // the impulse of a motor that is at its strength
+    double strength = 0;     // the most that its impulse may be
     Vector gap = Vector::Zero(), impulse = Vector::Zero();
+    bool limited() const { return std::isfinite(low) || std::isfinite(high); }
     Eigen::Index free_row() const { return kind == JointKind::Prismatic ? 1 : 2; }
   };
   using Numbers = std::pmr::vector<std::pair<BodyIndex, int>>;  // of bodies in the assembly, sorted
@@ -51,22 +55,46 @@ class Planar::Core::Assembly {
   void collect_joints(const Numbers& numbers);
   bool may_move();
   bool connects_script(const JointDescription& is) const;
-  void load();
+  void load(double dt);
   void load_joint(std::size_t index, double dt);
   void note_drive(Member& member, double dt);
-  FlatPose pose_of(const FlatBody* flat) const;
+  void aim(std::size_t index, double dt);
+  static FlatPose pose_before(const FlatBody& flat);
   Vector gap_of(std::size_t index, std::span<const FlatPose> poses) const;
   double travel_of(std::size_t index, std::span<const FlatPose> poses) const;
   std::pair<FlatPose, FlatPose> ends_of(std::size_t index, std::span<const FlatPose> poses) const;
+  std::pair<Vector, Vector> axis_rows(std::size_t index, std::span<const FlatPose> poses) const;
   void linearize(std::span<const FlatPose> poses);
-  void add_gravity(double dt);
-  void advance_poses(double dt);
-  bool find_path(double dt);
+  void add_loads(double h, double part);
+  void advance_poses(double h);
+  bool find_path(double h);
   void give_rates();
+  double find_gaps();
   void close_gaps();
-  void allow(double dt);
+  void allow(double h, bool ends);
+  bool take(double h, double part, bool last);
+  bool take_all(double dt, int parts);
+  bool release();
+
+  // assembly_energy.cpp
+  struct Common {
+    Vector2 center = Vector2::Zero();
+    Vector velocity = Vector::Zero();
+  };
+  bool pulled() const;
+  bool driven() const;
+  double drive_work() const;
+  void settle_energy(double began);
+  double kinetic() const;
+  double work_along_path(double h) const;
+  bool held_by_world() const;
+  Common common_motion() const;
+  Vector carried(const Common& common, std::size_t link) const;
+  void restore_energy(double energy);
+
+  // assembly.cpp
   void keep(double dt);
-  void keep_impulses(const Member& member, double dt);
+  void keep_impulses(const Member& member);
 
   Core& core_;
   bool planned_ = false;
@@ -74,7 +102,9 @@ class Planar::Core::Assembly {
   std::pmr::vector<Member> joints_;  // in the order of elimination
   JointSystem system_;
   std::pmr::vector<FlatPose> before_, after_;
-  std::pmr::vector<Vector> mobility_, velocities_, moves_, rates_;
+  double work_ = 0;  // of gravity and forces in the sub-step, in Box2D's units
+  double lost_ = 0;  // at limits, the same
+  std::pmr::vector<Vector> mobility_, velocities_, moves_, forces_, rates_;
 };
 
 }  // namespace breve

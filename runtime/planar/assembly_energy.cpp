@@ -1,0 +1,128 @@
+// What the motion of a passive assembly errs by in energy goes back into its motion. It is small, since the sub-step is
+// solved to second order, but what rotates far in a sub-step would lose some per cent in a minute.
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/planar/assembly.hpp"
+
+namespace breve {
+
+/// Springs, dampers or force methods act on it.
+bool Planar::Core::Assembly::pulled() const {
+  return std::any_of(links_.begin(), links_.end(), [](const Link& link) {
+    const FlatBody& flat = *link.flat;
+    return flat.pull != Vector2::Zero() || flat.twist != 0 || flat.asked != Vector2::Zero();
+  });
+}
+
+/// Motors or limits act in it.
+bool Planar::Core::Assembly::driven() const {
+  return std::any_of(joints_.begin(), joints_.end(),
+                     [](const Member& member) { return member.locked || member.load != 0; });
+}
+
+/// The work of all motors, by the mean of the rates before and after; a limit does none.
+double Planar::Core::Assembly::drive_work() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const Member& member = joints_[i];
+    if (member.locked ? member.limited() : member.load == 0) continue;
+    const auto [of_parent, of_child] = axis_rows(i, after_);
+    const JointSystem::Ends& ends = system_.ends(i);
+    double rate = 0;
+    if (ends.parent >= 0) rate += of_parent.dot(velocities_[static_cast<std::size_t>(ends.parent)]);
+    if (ends.child >= 0) rate += of_child.dot(velocities_[static_cast<std::size_t>(ends.child)]);
+    const double given = member.locked ? member.impulse[member.free_row()] : member.load;
+    sum += given * (core_.joints[member.joint].rate + rate) / 2;
+  }
+  return sum;
+}
+
+/// The works of gravity and of constant forces are known exactly: energy that differs from them is an error. Motors and
+/// limits may take more, so energy only goes back if nothing of this kind acts. The works of springs are not exact.
+/// @param began  the energy of motion as the sub-step began, in Box2D's units
+void Planar::Core::Assembly::settle_energy(double began) {
+  lost_ = 0;
+  if (pulled()) return;
+  const bool drives = driven();
+  const double energy = began + work_ + (drives ? drive_work() : 0);
+  if (!drives || kinetic() > energy) restore_energy(energy);
+  const bool limits = std::any_of(joints_.begin(), joints_.end(),
+                                  [](const Member& member) { return member.locked && member.limited(); });
+  if (limits) lost_ = std::max(energy - kinetic(), 0.0);
+}
+
+/// The energy of motion, in Box2D's units.
+double Planar::Core::Assembly::kinetic() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < links_.size(); ++i)
+    sum += velocities_[i].cwiseAbs2().cwiseQuotient(mobility_[i]).sum() / 2;
+  return sum;
+}
+
+/// The work of gravity and forces along the path of h seconds.
+double Planar::Core::Assembly::work_along_path(double h) const {
+  const Vector2 fall = vector_of(core_.b2->GetGravity());
+  double sum = 0;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Vector pull = forces_[i] + Vector(fall.x(), fall.y(), 0);
+    sum += h * velocities_[i].dot(pull.cwiseQuotient(mobility_[i]));
+  }
+  return sum;
+}
+
+bool Planar::Core::Assembly::held_by_world() const {
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+    if (system_.ends(i).parent < 0 || system_.ends(i).child < 0) return true;
+  return false;
+}
+
+/// The motion that a rigid body of the same momenta would have, as a velocity of the common center of mass and an angular
+/// one about it. Zero where the world holds the assembly.
+Planar::Core::Assembly::Common Planar::Core::Assembly::common_motion() const {
+  Common common;
+  if (held_by_world()) return common;
+  double mass = 0, inertia = 0, momentum = 0;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const double m = 1 / mobility_[i][0];
+    mass += m;
+    common.center += m * after_[i].center;
+    common.velocity.head<2>() += m * velocities_[i].head<2>();
+  }
+  common.center /= mass;
+  common.velocity /= mass;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const double m = 1 / mobility_[i][0], own = 1 / mobility_[i][2];
+    const Vector2 arm = after_[i].center - common.center;
+    inertia += own + m * arm.squaredNorm();
+    momentum += own * velocities_[i][2] + m * cross(arm, Vector2(velocities_[i].head<2>()));
+  }
+  common.velocity[2] = momentum / inertia;
+  return common;
+}
+
+/// Of a link, as if it moved with all others as a rigid body.
+Planar::Core::Assembly::Vector Planar::Core::Assembly::carried(const Common& common, std::size_t link) const {
+  const Vector2 moved = common.velocity[2] * left_of(after_[link].center - common.center);
+  return common.velocity + Vector(moved.x(), moved.y(), 0);
+}
+
+/// Scales the motion of the links among one another, which keeps all momenta, so that the energy is what it was and what
+/// the works came to.
+/// @param energy  of motion, that there is to be, in Box2D's units
+void Planar::Core::Assembly::restore_energy(double energy) {
+  constexpr double kMost = 0.1;  // of the energy of that motion
+  const Common common = common_motion();
+  const double missing = energy - kinetic();
+  std::fill(moves_.begin(), moves_.end(), Vector::Zero());
+  double among = 0;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    moves_[i] = velocities_[i] - carried(common, i);
+    among += moves_[i].cwiseAbs2().cwiseQuotient(mobility_[i]).sum() / 2;
+  }
+  if (!(among > 0) || !std::isfinite(missing)) return;
+  const double scale = std::sqrt(1 + std::clamp(missing / among, -kMost, kMost));
+  for (std::size_t i = 0; i < links_.size(); ++i) velocities_[i] += (scale - 1) * moves_[i];
+}
+
+}  // namespace breve
