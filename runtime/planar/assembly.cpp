@@ -471,8 +471,6 @@ void Planar::Core::Assembly::move(double dt) {
     if (link.eccentric) fastest = std::max(fastest, std::abs(double{link.flat->before_spin}));
   int parts = 1;
   while (parts < kMostParts / 4 && fastest * dt > kRotation * parts) parts *= 2;
-  static const bool old = getenv("OLDZ");
-  if (old) return;
   for (int i = 0; parts <= kMostParts; ++i) {
     if (!take_all(dt, parts)) {
       parts *= 2;
@@ -497,6 +495,11 @@ void Planar::Core::move_assemblies(double dt) {
   if (members_changed) return;  // a handler has changed them in this step
   if (!articulations_known) number_joints();
   for (const std::unique_ptr<Assembly>& one : articulations) one->move(dt);
+}
+
+void Planar::Core::take_back_gains(double dt) {
+  if (members_changed || !articulations_known) return;
+  for (const std::unique_ptr<Assembly>& one : articulations) one->take_back(dt);
 }
 
 }  // namespace breve

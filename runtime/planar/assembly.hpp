@@ -26,6 +26,7 @@ class Planar::Core::Assembly {
   Assembly(Core& core, BodyIndex first);
   /// Replaces what Box2D has made of a sub-step. Does nothing where something touches, or no solution is found.
   void move(double dt);
+  void take_back(double dt);
 
  private:
   struct Link {
@@ -81,6 +82,7 @@ class Planar::Core::Assembly {
     Vector2 center = Vector2::Zero();
     Vector velocity = Vector::Zero();
   };
+  bool touches_only_fixed() const;
   bool pulled() const;
   bool driven() const;
   double drive_work() const;

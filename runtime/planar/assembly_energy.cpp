@@ -1,9 +1,10 @@
-// What the motion of a passive assembly errs by in energy goes back into its motion. It is small, since the sub-step is
+// What the motion of an assembly errs by in energy goes back into its motion. It is small, since the sub-step is
 // solved to second order, but what rotates far in a sub-step would lose some per cent in a minute.
 #include <algorithm>
 #include <cmath>
 
 #include "runtime/planar/assembly.hpp"
+#include "runtime/planar/doors.hpp"
 
 namespace breve {
 
@@ -123,6 +124,47 @@ void Planar::Core::Assembly::restore_energy(double energy) {
   if (!(among > 0) || !std::isfinite(missing)) return;
   const double scale = std::sqrt(1 + std::clamp(missing / among, -kMost, kMost));
   for (std::size_t i = 0; i < links_.size(); ++i) velocities_[i] += (scale - 1) * moves_[i];
+}
+
+/// Whether nothing pushes it but bodies that neither move by themselves nor by scripts.
+bool Planar::Core::Assembly::touches_only_fixed() const {
+  for (const Link& link : links_) {
+    if (link.flat->pulled) return false;
+    for (const b2ContactEdge* edge = link.flat->b2->GetContactList(); edge; edge = edge->next) {
+      const FlatBody& other = core_.of(edge->other);
+      const bool own = other.assembly == link.flat->assembly, still = other.fixed && !other.driven;
+      if (edge->contact->IsTouching() && !own && !still) return false;
+    }
+  }
+  return true;
+}
+
+/// Energy that contacts and joints have given to an assembly that Box2D has moved is taken from its motion.
+void Planar::Core::Assembly::take_back(double dt) {
+  constexpr double kFlies = 4;    // times that energy: what lies has hardly any
+  constexpr double kSeen = 1e-6;  // of it: less is round-off
+  double given = 0, has = 0;      // J
+  for (Link& link : links_) {
+    link.flat = core_.find(link.body);
+    if (!link.flat || link.flat->fixed || link.flat->solved || link.flat->set_apart) return;
+    if (!link.flat->b2->IsAwake()) return;
+    given += core_.held_work(*link.flat, link.flat->b2->GetLinearVelocity(), dt);
+    has += core_.motion_of(*link.flat);
+  }
+  for (const Member& member : joints_) {
+    const FlatJoint& joint = core_.joints[member.joint];
+    if (!joint.used || joint.serial != member.serial || connects_script(joint.is)) return;
+    given -= core_.motor_work(joint, dt);
+  }
+  if (!(given > kSeen * has) || !(has > kFlies * given) || !touches_only_fixed()) return;
+  const auto left = static_cast<float>(std::sqrt(1 - given / has));
+  for (const Link& link : links_) {
+    b2Body& b = *link.flat->b2;
+    const float slow = sleep_time(b);  // a velocity that is set would begin it anew
+    b.SetLinearVelocity(left * b.GetLinearVelocity());
+    b.SetAngularVelocity(left * b.GetAngularVelocity());
+    sleep_time(b) = slow;
+  }
 }
 
 }  // namespace breve

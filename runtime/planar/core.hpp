@@ -324,6 +324,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   bool articulations_known = false;                           // no body or joint came or went since
   void number_joints();
   void move_assemblies(double dt);
+  void take_back_gains(double dt);
 
   // landings.cpp: what Box2D's sweeps solve badly
   class Island;
@@ -386,6 +387,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   double energy_of(BodyIndex body) const;
   void end_ledger(double dt);
   double take_back(FlatBody& flat, double given);
+  double held_work(const FlatBody& flat, const b2Vec2& moved_by, double dt) const;
   Energy energy() const;
   double springs_energy() const;
   double joint_rate(const FlatJoint& joint) const;

@@ -140,10 +140,22 @@ double Planar::Core::take_back(FlatBody& flat, double given) {
   return given;
 }
 
+/// The work of all that joins and touches a body in this sub-step, J.
+/// @param moved_by  the velocity by which Box2D has moved it
+double Planar::Core::held_work(const FlatBody& flat, const b2Vec2& moved_by, double dt) const {
+  const double u = settings.unit, m = flat.mass.mass;
+  const Vector2 before = u * vector_of(flat.before), after = u * vector_of(flat.b2->GetLinearVelocity());
+  const double w = flat.b2->GetAngularVelocity(), w_before = flat.before_spin;
+  const Vector2 force = flat.force + flat.asked + flat.pull;
+  // Gravity works along the way that the body was moved, which is not the mean velocity's where something struck.
+  return (m * (after - before) - dt * force).dot(before + after) / 2 -
+         dt * u * m * settings.gravity.head<2>().dot(vector_of(moved_by)) +
+         (flat.mass.inertia(2, 2) * (w - w_before) - dt * (flat.torque + flat.twist)) * (w + w_before) / 2;
+}
+
 /// Gives back what was taken off, takes back what contacts gave, and writes down what the sub-step did.
 void Planar::Core::end_ledger(double dt) {
   const double u = settings.unit;
-  const Vector2 gravity = settings.gravity.head<2>();
   double held_back = 0;              // work of all that joins and touches
   double forced = 0, put_right = 0;  // that of forces that scripts set, and of what Box2D moved apart or together
   const b2Vec2 down = b2->GetGravity();
@@ -160,13 +172,8 @@ void Planar::Core::end_ledger(double dt) {
     const Vector2 sum(u * (double{v.x} + flat.before.x), u * (double{v.y} + flat.before.y));
     const double spins = w + double{flat.before_spin};
     if (sum == Vector2::Zero() && spins == 0) continue;
-    const double m = flat.mass.mass;
-    const Vector2 change(u * (double{v.x} - flat.before.x), u * (double{v.y} - flat.before.y));
     const Vector2 force = flat.force + flat.asked;
-    // Gravity works along the way that the body was moved, which is not the mean velocity's where something struck.
-    const double held =
-        (m * change - dt * (force + flat.pull)).dot(sum) / 2 - dt * u * m * gravity.dot(vector_of(moved_by)) +
-        (flat.mass.inertia(2, 2) * (w - flat.before_spin) - dt * (flat.torque + flat.twist)) * spins / 2;
+    const double held = held_work(flat, moved_by, dt);
     // Joints do no work on what was solved as a whole: what its energy errs by shows in the residual.
     if (!flat.solved) held_back += held - take_back(flat, held);
     if (flat.has_force || flat.asked != Vector2::Zero()) forced += dt * (force.dot(sum) + flat.torque * spins) / 2;
