@@ -1,9 +1,10 @@
-// Box2D moves links along the tangents of their paths, and then pulls their joints together without changing velocities.
-// Angular momentum and energy of what rotates are lost in this way, and where its sweeps have not converged, links are
-// lifted for nothing. So the sub-step of an assembly that touches nothing is solved again, as RATTLE does (Andersen
-// 1983): impulses of the joints at the old pose, such that all joints hold at the new one, then impulses at the new pose
-// such that the velocities are allowed there. Gravity acts in halves before and after. Momenta are kept exactly, and the
-// energy errs by the square of the sub-step without drift. Which motors and limits hold is what Box2D has found.
+// Box2D moves links along the tangents of their paths, and then pulls their joints together without changing
+// velocities. Angular momentum and energy of what rotates are lost in this way, and where its sweeps have not
+// converged, links are lifted for nothing. So the sub-step of an assembly that touches nothing is solved again, as
+// RATTLE does (Andersen 1983): impulses of the joints at the old pose, such that all joints hold at the new one, then
+// impulses at the new pose such that the velocities are allowed there. Gravity acts in halves before and after. Momenta
+// are kept exactly, and the energy errs by the square of the sub-step without drift. Which motors and limits hold is
+// what Box2D has found.
 #include "runtime/planar/assembly.hpp"
 
 #include <algorithm>
@@ -16,10 +17,10 @@ namespace breve {
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
-
 /// How the velocity of a point along a direction follows from (x, y, angular) of a body.
-JointSystem::Vector row_of(const Vector2& along, const Vector2& arm) { return {along.x(), along.y(), cross(arm, along)}; }
+JointSystem::Vector row_of(const Vector2& along, const Vector2& arm) {
+  return {along.x(), along.y(), cross(arm, along)};
+}
 
 }  // namespace
 
@@ -123,15 +124,6 @@ void Planar::Core::Assembly::load(double dt) {
   for (std::size_t i = 0; i < joints_.size(); ++i) aim(i, dt);
 }
 
-/// A limit is reached at the end of the sub-step and stops its joint there; a motor keeps its speed.
-void Planar::Core::Assembly::aim(std::size_t index, double dt) {
-  Member& member = joints_[index];
-  if (!member.locked || !member.limited()) return;
-  const double travel = travel_of(index, before_);
-  member.target = member.low > -kNone ? -std::max(travel - member.low, 0.0) / dt
-                                      : std::max(member.high - travel, 0.0) / dt;
-}
-
 FlatPose Planar::Core::Assembly::pose_before(const FlatBody& flat) {
   return {vector_of(flat.at), double{flat.before_angle}};
 }
@@ -167,34 +159,6 @@ void Planar::Core::Assembly::load_joint(std::size_t index, double dt) {
   note_drive(member, dt);
 }
 
-/// Whether a motor below its strength, or a limit, has decided the rate of a joint's own axis.
-void Planar::Core::Assembly::note_drive(Member& member, double dt) {
-  constexpr double kFull = 0.999;  // of its strength: a force
-  const FlatJoint& joint = core_.joints[member.joint];
-  member.locked = false;
-  member.load = 0;
-  member.low = -kNone;
-  member.high = kNone;
-  if (member.kind == JointKind::Fixed) return;
-  const WarmJoint warm = core_.warm_of(joint);
-  const auto note = [&](const auto* b, double strength) {
-    const bool holds = b->IsMotorEnabled() && std::abs(double{warm.motor}) < kFull * strength * dt;
-    if (b->IsLimitEnabled() && warm.lower > 0) member.low = double{b->GetLowerLimit()};
-    if (b->IsLimitEnabled() && warm.upper > 0) member.high = double{b->GetUpperLimit()};
-    member.locked = holds || member.low > -kNone || member.high < kNone;
-    member.strength = b->IsMotorEnabled() ? strength * dt : 0;
-    member.target = double{b->GetMotorSpeed()};
-    if (!member.locked) member.load = double{warm.motor};
-  };
-  if (member.kind == JointKind::Revolute) {
-    const auto* b = static_cast<const b2RevoluteJoint*>(joint.b2);
-    note(b, double{b->GetMaxMotorTorque()});
-  } else {
-    const auto* b = static_cast<const b2PrismaticJoint*>(joint.b2);
-    note(b, double{const_cast<b2PrismaticJoint*>(b)->GetMaxMotorForce()});
-  }
-}
-
 std::pair<FlatPose, FlatPose> Planar::Core::Assembly::ends_of(std::size_t index,
                                                               std::span<const FlatPose> poses) const {
   const JointSystem::Ends& ends = system_.ends(index);
@@ -203,7 +167,8 @@ std::pair<FlatPose, FlatPose> Planar::Core::Assembly::ends_of(std::size_t index,
 }
 
 /// By how much a joint is open: length units, and rad where it holds rotation.
-Planar::Core::Assembly::Vector Planar::Core::Assembly::gap_of(std::size_t index, std::span<const FlatPose> poses) const {
+Planar::Core::Assembly::Vector Planar::Core::Assembly::gap_of(std::size_t index,
+                                                              std::span<const FlatPose> poses) const {
   const Member& member = joints_[index];
   const auto [parent, child] = ends_of(index, poses);
   const Vector2 way = child.point(member.child_point) - parent.point(member.parent_point);
@@ -213,15 +178,6 @@ Planar::Core::Assembly::Vector Planar::Core::Assembly::gap_of(std::size_t index,
     case JointKind::Prismatic: return {way.dot(left_of(parent.rotated(member.axis))), 0, rotation};
     default: return {way.x(), way.y(), rotation};
   }
-}
-
-/// Of its own axis, as Box2D counts it.
-double Planar::Core::Assembly::travel_of(std::size_t index, std::span<const FlatPose> poses) const {
-  const Member& member = joints_[index];
-  const auto [parent, child] = ends_of(index, poses);
-  if (member.kind == JointKind::Revolute) return child.angle - parent.angle - member.reference;
-  const Vector2 way = child.point(member.child_point) - parent.point(member.parent_point);
-  return way.dot(parent.rotated(member.axis));
 }
 
 void Planar::Core::Assembly::linearize(std::span<const FlatPose> poses) {
@@ -271,8 +227,8 @@ void Planar::Core::Assembly::add_loads(double h, double part) {
 }
 
 /// How the rate of the axis of its own follows from the velocities of parent and child.
-std::pair<Planar::Core::Assembly::Vector, Planar::Core::Assembly::Vector> Planar::Core::Assembly::axis_rows(std::size_t index,
-                                                            std::span<const FlatPose> poses) const {
+std::pair<Planar::Core::Assembly::Vector, Planar::Core::Assembly::Vector> Planar::Core::Assembly::axis_rows(
+    std::size_t index, std::span<const FlatPose> poses) const {
   if (joints_[index].kind == JointKind::Revolute) return {-Vector::UnitZ(), Vector::UnitZ()};
   const Member& member = joints_[index];
   const auto [parent, child] = ends_of(index, poses);
@@ -297,11 +253,11 @@ void Planar::Core::Assembly::give_rates() {
 
 /// Impulses at the old pose, such that the joints are as open at the new one as they were. Whether they were found.
 bool Planar::Core::Assembly::find_path(double dt) {
-  constexpr int kMost = 12;             // times
-  constexpr double kExact = 1e-7;      // length units or rad
-  constexpr double kGood = 1e-5;       // the same: the rest is closed afterwards
+  constexpr int kMost = 12;        // times
+  constexpr double kExact = 1e-7;  // length units or rad
+  constexpr double kGood = 1e-5;   // the same: the rest is closed afterwards
   constexpr double kConverges = 0.7;
-  double last = kNone;
+  double last = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kMost; ++i) {
     advance_poses(dt);
     double worst = 0;
@@ -337,9 +293,9 @@ double Planar::Core::Assembly::find_gaps() {
 
 /// What joints are open at the new pose is closed there, as Box2D does it: positions move and velocities do not.
 void Planar::Core::Assembly::close_gaps() {
-  constexpr double kOpen = 1e-5;      // length units or rad
-  constexpr double kMost = 0.1;       // the same: what is moved at once
-  constexpr int kMostRounds = 3;      // of Newton's method
+  constexpr double kOpen = 1e-5;  // length units or rad
+  constexpr double kMost = 0.1;   // the same: what is moved at once
+  constexpr int kMostRounds = 3;  // of Newton's method
   for (int round = 0; round < kMostRounds && find_gaps() > kOpen; ++round) {
     for (Vector& gap : rates_) gap = -gap;
     system_.solve(rates_);
@@ -398,30 +354,13 @@ void Planar::Core::Assembly::keep_impulses(const Member& member) {
   warm.y = static_cast<float>(member.kind == JointKind::Prismatic ? given.z() : given.y());
   if (member.kind == JointKind::Fixed) warm.angular = static_cast<float>(given.z());
   const auto driven = static_cast<float>(member.locked ? given[member.free_row()] : member.load);
-  if (member.locked && member.low > -kNone)
+  if (member.locked && std::isfinite(member.low))
     warm.lower = std::max(driven, 0.0F);
-  else if (member.locked && member.high < kNone)
+  else if (member.locked && std::isfinite(member.high))
     warm.upper = std::max(-driven, 0.0F);
   else if (member.kind != JointKind::Fixed)
     warm.motor = driven;
   core_.set_warm(core_.joints[member.joint], warm);
-}
-
-/// Motors that would need more than their strength, and limits that would pull, let go. Whether there were any.
-bool Planar::Core::Assembly::release() {
-  bool any = false;
-  for (Member& member : joints_) {
-    if (!member.locked || member.kind == JointKind::Fixed) continue;
-    const double given = member.impulse[member.free_row()];
-    const bool lower = member.low > -kNone, upper = member.high < kNone;
-    const bool pulls = (lower && !upper && given < 0) || (upper && !lower && given > 0);
-    const bool weak = !lower && !upper && std::abs(given) > member.strength;
-    if (!pulls && !weak) continue;
-    member.locked = false;
-    member.load = std::copysign(weak ? member.strength : 0, given);
-    any = true;
-  }
-  return any;
 }
 
 /// One of the parts in which what rotates far takes a sub-step. Whether it has a solution.
@@ -462,7 +401,7 @@ bool Planar::Core::Assembly::take_all(double dt, int parts) {
 }
 
 void Planar::Core::Assembly::move(double dt) {
-  constexpr double kRotation = 0.2;                 // rad, of a part
+  constexpr double kRotation = 0.2;                  // rad, of a part
   constexpr int kMostParts = 32, kMostReleases = 4;  // more parts only where there is no other solution
   if (!may_move()) return;
   load(dt);

@@ -9,7 +9,7 @@ namespace breve {
 /// A body's pose: its center of mass, length units, and its rotation.
 struct FlatPose {
   Vector2 center = Vector2::Zero();
-  double angle = 0;                 // rad
+  double angle = 0;                  // rad
   Vector2 along = Vector2::UnitX();  // the body's x axis
   FlatPose() = default;
   FlatPose(const Vector2& at, double rotation)
@@ -39,14 +39,14 @@ class Planar::Core::Assembly {
     std::uint64_t serial = 0;
     JointKind kind = JointKind::Fixed;
     Vector2 parent_point = Vector2::Zero(), child_point = Vector2::Zero();  // from the centers of mass, in the bodies
-    Vector2 axis = Vector2::UnitX();                                       // of a prismatic one, in the parent
-    double reference = 0;                                                  // rad
-    FlatPose parent, child;                                                // of bodies that do not move by themselves
-    bool locked = false;    // its motor or a limit decides how it moves
-    double low = 0, high = 0;  // limits that it is at, rad or length units
-    double target = 0;       // the rate that motor or limit give it
-    double load = 0;         // the impulse of a motor that is at its strength
-    double strength = 0;     // the most that its impulse may be
+    Vector2 axis = Vector2::UnitX();                                        // of a prismatic one, in the parent
+    double reference = 0;                                                   // rad
+    FlatPose parent, child;                                                 // of bodies that do not move by themselves
+    bool locked = false;                                                    // its motor or a limit decides how it moves
+    double low = 0, high = 0;                                               // limits that it is at, rad or length units
+    double target = 0;                                                      // the rate that motor or limit give it
+    double load = 0;      // the impulse of a motor that is at its strength
+    double strength = 0;  // the most that its impulse may be
     Vector gap = Vector::Zero(), impulse = Vector::Zero();
     bool limited() const { return std::isfinite(low) || std::isfinite(high); }
     Eigen::Index free_row() const { return kind == JointKind::Prismatic ? 1 : 2; }

@@ -78,8 +78,8 @@ bool Planar::Core::Assembly::held_by_world() const {
   return false;
 }
 
-/// The motion that a rigid body of the same momenta would have, as a velocity of the common center of mass and an angular
-/// one about it. Zero where the world holds the assembly.
+/// The motion that a rigid body of the same momenta would have, as a velocity of the common center of mass and an
+/// angular one about it. Zero where the world holds the assembly.
 Planar::Core::Assembly::Common Planar::Core::Assembly::common_motion() const {
   Common common;
   if (held_by_world()) return common;
@@ -108,8 +108,8 @@ Planar::Core::Assembly::Vector Planar::Core::Assembly::carried(const Common& com
   return common.velocity + Vector(moved.x(), moved.y(), 0);
 }
 
-/// Scales the motion of the links among one another, which keeps all momenta, so that the energy is what it was and what
-/// the works came to.
+/// Scales the motion of the links among one another, which keeps all momenta, so that the energy is what it was and
+/// what the works came to.
 /// @param energy  of motion, that there is to be, in Box2D's units
 void Planar::Core::Assembly::restore_energy(double energy) {
   constexpr double kMost = 0.1;  // of the energy of that motion

@@ -41,7 +41,8 @@ bool JointSystem::plan_blocks() {
   std::pmr::memory_resource* memory = ends_.get_allocator().resource();
   int bodies = 0;
   for (const Ends& ends : ends_) bodies = std::max({bodies, ends.parent + 1, ends.child + 1});
-  std::pmr::vector<std::pmr::vector<std::uint32_t>> at(static_cast<std::size_t>(bodies), memory), columns(joints, memory);
+  std::pmr::vector<std::pmr::vector<std::uint32_t>> at(static_cast<std::size_t>(bodies), memory),
+      columns(joints, memory);
   for (std::uint32_t i = 0; i < joints; ++i)
     for (const int body : {ends_[i].parent, ends_[i].child})
       if (body >= 0) at[static_cast<std::size_t>(body)].push_back(i);
@@ -151,7 +152,8 @@ JointSystem::Vector JointSystem::rate_of(std::size_t joint, std::span<const Vect
 void JointSystem::spread(std::span<const Vector> impulses, std::span<Vector> velocities) const {
   for (std::size_t i = 0; i < ends_.size(); ++i) {
     const Ends& ends = ends_[i];
-    if (ends.parent >= 0) velocities[static_cast<std::size_t>(ends.parent)].noalias() += spreads_[i].parent * impulses[i];
+    if (ends.parent >= 0)
+      velocities[static_cast<std::size_t>(ends.parent)].noalias() += spreads_[i].parent * impulses[i];
     if (ends.child >= 0) velocities[static_cast<std::size_t>(ends.child)].noalias() += spreads_[i].child * impulses[i];
   }
 }

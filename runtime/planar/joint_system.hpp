@@ -9,9 +9,9 @@
 
 namespace breve {
 
-/// J M^-1 J^T of an assembly, factored as L D L^T in blocks of 3 x 3, one row of blocks a joint. Two joints couple where
-/// they hold the same body, so a chain costs time in proportion to its joints. Loops only add blocks. The structure is
-/// planned once; factoring and solving allocate nothing.
+/// J M^-1 J^T of an assembly, factored as L D L^T in blocks of 3 x 3, one row of blocks a joint. Two joints couple
+/// where they hold the same body, so a chain costs time in proportion to its joints. Loops only add blocks. The
+/// structure is planned once; factoring and solving allocate nothing.
 class JointSystem {
  public:
   using Block = Eigen::Matrix3d;
@@ -64,9 +64,9 @@ class JointSystem {
   void eliminate();
 
   std::pmr::vector<Ends> ends_;
-  std::pmr::vector<Rates> rates_, spreads_;      // spreads_: M^-1 times the transpose
-  std::pmr::vector<Place> places_;               // of below_, column after column
-  std::pmr::vector<std::uint32_t> first_;        // block of a column, and one beyond
+  std::pmr::vector<Rates> rates_, spreads_;       // spreads_: M^-1 times the transpose
+  std::pmr::vector<Place> places_;                // of below_, column after column
+  std::pmr::vector<std::uint32_t> first_;         // block of a column, and one beyond
   std::pmr::vector<std::uint32_t> first_update_;  // of a column, and one beyond
   std::pmr::vector<Coupling> couplings_;
   std::pmr::vector<Update> updates_;
