@@ -401,16 +401,19 @@ bool Planar::Core::Assembly::take_all(double dt, int parts) {
 }
 
 void Planar::Core::Assembly::move(double dt) {
-  constexpr double kRotation = 0.2;                  // rad, of a part
-  constexpr int kMostParts = 32, kMostReleases = 4;  // more parts only where there is no other solution
-  if (!may_move()) return;
+  constexpr double kRotation = 0.2;                 // rad, of a part
+  constexpr int kUsualParts = 8, kMostParts = 128;  // more than usual only where there is no other solution
+  constexpr int kMostReleases = 4;
+  constexpr std::uint64_t kWork = 20;  // for each joint and part
+  if (core_.finishing || !may_move()) return;
   load(dt);
   double fastest = 0;
   for (const Link& link : links_)
     if (link.eccentric) fastest = std::max(fastest, std::abs(double{link.flat->before_spin}));
   int parts = 1;
-  while (parts < kMostParts / 4 && fastest * dt > kRotation * parts) parts *= 2;
+  while (parts < kUsualParts && fastest * dt > kRotation * parts) parts *= 2;
   for (int i = 0; parts <= kMostParts; ++i) {
+    core_.counters.work += kWork * joints_.size() * static_cast<std::uint64_t>(parts);
     if (!take_all(dt, parts)) {
       parts *= 2;
       continue;
