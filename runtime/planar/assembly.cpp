@@ -383,13 +383,13 @@ bool Planar::Core::Assembly::take_all(double dt, int parts) {
     before_[i] = pose_before(flat);
     velocities_[i] = Vector(double{flat.before.x}, double{flat.before.y}, double{flat.before_spin});
   }
-  for (Member& member : joints_) member.impulse.setZero();
   linearize(before_);
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     rates_[i] = system_.rate_of(i, velocities_);
     if (joints_[i].locked) rates_[i][joints_[i].free_row()] = 0;
   }
   give_rates();  // what contacts left, the joints may not allow
+  for (Member& member : joints_) member.impulse.setZero();
   const double began = kinetic();
   work_ = 0;
   for (int i = 0; i < parts; ++i) {

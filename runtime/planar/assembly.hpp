@@ -26,6 +26,7 @@ class Planar::Core::Assembly {
   Assembly(Core& core, BodyIndex first);
   /// Replaces what Box2D has made of a sub-step. Does nothing where something touches, or no solution is found.
   void move(double dt);
+  /// Energy that contacts and joints have given it is taken from its motion, where Box2D has moved it.
   void take_back(double dt);
 
  private:

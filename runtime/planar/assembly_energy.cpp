@@ -139,7 +139,6 @@ bool Planar::Core::Assembly::touches_only_fixed() const {
   return true;
 }
 
-/// Energy that contacts and joints have given to an assembly that Box2D has moved is taken from its motion.
 void Planar::Core::Assembly::take_back(double dt) {
   constexpr double kFlies = 4;    // times that energy: what lies has hardly any
   constexpr double kSeen = 1e-6;  // of it: less is round-off
