@@ -74,7 +74,7 @@ void find_order(Workspace& work, const Neighbors& neighbors) {
   std::reverse(order.begin(), order.end());
 }
 
-// What is stored of the matrix is cleared, and each column looked down: a line of the cache for each number.
+// The stored part of the matrix is cleared, and each column looked down: a line of the cache for each number.
 constexpr double kLook = 10;
 constexpr double kStored = 3;               // times the band of a row
 constexpr double kNarrowest = 6 * kStored;  // numbers of a row: those of one body

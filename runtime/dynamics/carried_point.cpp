@@ -13,6 +13,11 @@ struct Axis {
   Vector3 from, to;
 };
 
+Axis axis_of(const Shape& shape, const Pose& from, const Pose& to) {
+  const Vector3 own = Vector3::Unit(shape.round().axis);
+  return {from.orientation * own, to.orientation * own};
+}
+
 Vector3 shortest(const Axis& axis, const Vector3& arm) { return Quaternion::FromTwoVectors(axis.from, axis.to) * arm; }
 
 /// A capsule's point lies its radius from the axis, along the normal.
@@ -43,13 +48,18 @@ std::optional<Vector3> on_cylinder(const Axis& axis, const Vector3& normal, cons
 
 bool is_round(const Shape& shape) { return shape.kind() == ShapeKind::Sphere || shape.round().is_round(); }
 
-Vector3 carried_by(const Shape& shape, const Vector3& point, const Vector3& normal, const Pose& from, const Pose& to) {
+Vector3 carried_by(const Shape& shape, const Vector3& point, const Pose& from, const Pose& to) {
   const Vector3 arm = point - from.location;
   if (!is_round(shape)) return to.location + to.orientation * (from.orientation.conjugate() * arm);
   if (shape.kind() == ShapeKind::Sphere) return point + to.location - from.location;
+  return to.location + shortest(axis_of(shape, from, to), arm);
+}
+
+Vector3 carried_by(const Shape& shape, const Vector3& point, const Vector3& normal, const Pose& from, const Pose& to) {
   const Round& round = shape.round();
-  const Vector3 own = Vector3::Unit(round.axis);
-  const Axis axis{from.orientation * own, to.orientation * own};
+  if (!round.is_round()) return carried_by(shape, point, from, to);
+  const Vector3 arm = point - from.location;
+  const Axis axis = axis_of(shape, from, to);
   const std::optional<Vector3> found =
       round.is_capsule() ? on_capsule(round, axis, normal, arm) : on_cylinder(axis, normal, arm);
   return to.location + found.value_or(shortest(axis, arm));

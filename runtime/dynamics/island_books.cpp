@@ -121,11 +121,13 @@ void Books::close() {
   const auto close = [&](const SubStepEnergy& start, double stored, double kinetic, const Tree* tree, Energy& ledger) {
     const double more = missing(stored - start.stored - start.unexplained, start.ledger, ledger);
     if (only_motors()) {
-      // The same rates are another motion where their impulses moved the links to.
-      const double moved = kinetic - start.solved_kinetic;
-      const double by_motors = uncancelled(more - moved, start.unexplained);
+      // The same rates are another motion where their impulses moved the links to: beyond the doubt about their work,
+      // motors did not do that.
+      const double moved = kinetic - start.solved_kinetic, left = uncancelled(more, start.unexplained);
+      const double most = std::max(rows_.motor_doubt(tree), std::abs(uncancelled(more - moved, start.unexplained)));
+      const double by_motors = std::clamp(left, -most, most);
       ledger.motor_work += by_motors;
-      erred = uncancelled(more, start.unexplained) - by_motors - rows_.motor_doubt(tree);
+      erred = left - by_motors;
     } else {
       ledger.contact_loss -= more;
     }

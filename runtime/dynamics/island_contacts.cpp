@@ -56,6 +56,15 @@ Touch touch_at(std::size_t pair, const Pose& a, const Pose& b, const Manifold& m
 
 }  // namespace
 
+/// A blow did not act along the way. What rests is not to be disturbed; and on rungs that take rises of energy back
+/// from motion anyway, no more than what is much faster than rest.
+double Contacts::unseen_spin(const Free& one) const {
+  constexpr double kCoarse = 8;
+  if (one.struck) return JointDrive::kNoLimit;
+  const bool coarse = state_.accuracy.rung == Rung::Fast || state_.accuracy.rung == Rung::Balanced;
+  return (coarse ? kCoarse : 1) * resting_ / state_.shape(one.body).bounding_radius();
+}
+
 void Contacts::find_touches(double h, bool speculative) {
   spent_ = speculative;
   touches_.clear();

@@ -105,11 +105,8 @@ class Contacts {
   const Rebound& rebound_of(const Touch& touch) const { return pair_rebounds_[touch.pair]; }
   /// m/s: slower than this is at rest, in a sub-step of this length.
   double resting() const { return resting_; }
-  /// rad/s, by which the spin of a body that is rotated by hand may be wrong: what rests is not to be disturbed, and a
-  /// blow did not act along the way.
-  double unseen_spin(const Free& one) const {
-    return one.struck ? JointDrive::kNoLimit : resting_ / state_.shape(one.body).bounding_radius();
-  }
+  /// rad/s, by which the spin of a body that is rotated by hand may be wrong.
+  double unseen_spin(const Free& one) const;
   /// No impact is located any more: the last look was speculative.
   bool spent() const { return spent_; }
 

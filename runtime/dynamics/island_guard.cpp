@@ -121,7 +121,7 @@ void Guard::undo_rise_of_free_bodies(Rung rung) {
   if (!state_.networks.empty() && !momentum_.touched_from_outside()) return;
   const Common common = momentum_.common_of_free_bodies();
   if (!(common.inner > 0) || !std::isfinite(common.inner)) return;
-  // What was pushed out of an overlap against a spring may gain more than moves in the end.
+  // A body that was pushed out of an overlap against a spring may gain more than moves in the end.
   const bool wound = !state_.networks.empty() && risen > kFew * state_.swung;
   const double most = wound ? common.inner : kFew * common.inner;
   const double taken = common.inner > kFlies * risen ? risen : std::min(risen, most);

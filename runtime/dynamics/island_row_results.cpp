@@ -89,7 +89,7 @@ bool Rows::squeezed(double stopped) {
 }
 
 /// m/s along the normal, by which smooth motion changed the velocity of one side: of a free body that of its centre of
-/// mass, since its rotation is no force.
+/// mass, since its rotation is not a force.
 double Rows::swerve(std::size_t contact, bool first) const {
   const contact::Row& row = rows_[contact];
   const int index = first ? row.a : row.b;
@@ -120,7 +120,7 @@ bool Rows::unsteady(std::size_t contact, double h) const {
 
 /// After smooth motion of h seconds, whose velocities the movers have: whether bodies that were apart are apart all the
 /// way since something stronger than gravity, such as a spring, turns them. The rate at which they approach at one end
-/// then says nothing of whether they touch. What was predicted acts in smooth motion and not in the velocities: there
+/// then says nothing of whether they touch. A predicted force acts in smooth motion and not in the velocities: there
 /// the path does not tell.
 bool Rows::turns_back(std::size_t contact, double h) {
   const auto& [touch, pair, row, law] = this->contact(contact);

@@ -127,8 +127,9 @@ bool Rows::carries(const NearPair& pair, bool first) const {
 Vector3 Rows::taken(const Touch& touch, bool first) const {
   const NearPair& pair = contacts_.pair_of(touch);
   const BodyIndex body = first ? pair.a : pair.b;
-  return carried_by(state_.shape(body), touch.start, touch.normal, first ? touch.from_a : touch.from_b,
-                    state_.pose_of(body));
+  const Pose &from = first ? touch.from_a : touch.from_b, to = state_.pose_of(body);
+  return state_.slot_of(body).tree ? carried_by(state_.shape(body), touch.start, from, to)
+                                   : carried_by(state_.shape(body), touch.start, touch.normal, from, to);
 }
 
 /// Where two bodies touch once they have moved: a round body's point goes with its centre, a corner's with its body;

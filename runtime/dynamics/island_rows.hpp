@@ -117,8 +117,8 @@ class Rows {
   /// J, in this try of a step, that the impulses would give if each acted alone. What rests under opposite impulses has
   /// round-off of them.
   double pressed() const { return pressed_; }
-  /// J, by which the work of motors on a tree (null: on all) may differ along the sub-step: they pushed, in smooth motion
-  /// and as rows, while the rate went from before() to what it is.
+  /// J, by which the work of motors on a tree (null: on all) may differ from what was booked: they pushed, in smooth
+  /// motion and as rows, while the rate went from before() to what it is.
   double motor_doubt(const Tree* tree) const;
   void note_contact_forces(double h);
   void note_limit_forces(double h);

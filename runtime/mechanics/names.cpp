@@ -20,15 +20,15 @@ constexpr std::array<Words, 5> kRungs{"fast", "balanced", "precise", "reference"
 constexpr std::array<Words, 4> kModes{"off", "report", "refine", "rest"};
 constexpr std::array<Words, 4> kActions{"reported", "refined", "put to rest", "finished coarsely"};
 constexpr std::array<Words, 10> kReasons{"a number is not finite",
-                                        "unexplained energy gain",
-                                        "an overlap grows",
-                                        "a body rotates too far in one sub-step",
-                                        "a damper is too strong for the sub-step",
-                                        "more impacts in one sub-step than can be located",
-                                        "no solution was found for an equation of the step",
-                                        "the work budget of the step is used up",
-                                        "a link moves too fast for step control",
-                                        "a joint opens"};
+                                         "unexplained energy gain",
+                                         "an overlap grows",
+                                         "a body rotates too far in one sub-step",
+                                         "a damper is too strong for the sub-step",
+                                         "more impacts in one sub-step than can be located",
+                                         "no solution was found for an equation of the step",
+                                         "the work budget of the step is used up",
+                                         "a link moves too fast for step control",
+                                         "a joint opens"};
 
 template <class Enum, std::size_t N>
 Enum named(const std::array<Words, N>& names, Words name, Words what) {

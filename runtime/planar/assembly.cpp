@@ -151,7 +151,7 @@ void Planar::Core::Assembly::load_joint(std::size_t index, double dt) {
   if (ends.child < 0) member.child = pose_now(child);
   for (const auto& [end, point] : {std::pair{ends.parent, &member.parent_point}, {ends.child, &member.child_point}}) {
     if (end < 0) continue;
-    // Of what a joint holds near its center, the joint does not move as it rotates.
+    // A joint near the center of a link does not move as the link rotates.
     constexpr double kNear = 0.01;
     const Vector& m = mobility_[static_cast<std::size_t>(end)];
     if (point->squaredNorm() * m[2] > kNear * m[0]) links_[static_cast<std::size_t>(end)].eccentric = true;
@@ -208,12 +208,15 @@ void Planar::Core::Assembly::linearize(std::span<const FlatPose> poses) {
   system_.factor(mobility_);
 }
 
-/// The impulses of h seconds: half of gravity, all of the forces, and of motors that are at their strength.
+/// The part of a link's forces that acts before it moves: those of springs in flight are meant for halves.
+double Planar::Core::Assembly::early(const Link& link) { return link.flat->flies ? 0.5 : 1; }
+
+/// The impulses of h seconds: half of gravity, the early part of the forces, and of motors that are at their strength.
 /// @param part  of the sub-step that this is
 void Planar::Core::Assembly::add_loads(double h, double part) {
   const Vector2 fall = h / 2 * vector_of(core_.b2->GetGravity());
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    velocities_[i] += h * forces_[i];
+    velocities_[i] += early(links_[i]) * h * forces_[i];
     velocities_[i].head<2>() += fall;
   }
   for (std::size_t i = 0; i < joints_.size(); ++i) {
@@ -268,7 +271,7 @@ bool Planar::Core::Assembly::find_path(double dt) {
         rates_[k][member.free_row()] = system_.rate_of(k, velocities_)[member.free_row()] - member.target;
       worst = std::max(worst, rates_[k].cwiseAbs().maxCoeff());
     }
-    if (worst * dt < kExact) return true;
+    if (i > 0 && worst * dt < kExact) return true;  // in a short sub-step the first look would be good enough
     if (!(worst < kConverges * last)) return worst * dt < kGood;
     last = worst;
     give_rates();
@@ -314,7 +317,10 @@ void Planar::Core::Assembly::close_gaps() {
 /// @param ends  the sub-step, where limits are reached
 void Planar::Core::Assembly::allow(double h, bool ends) {
   const Vector2 fall = h / 2 * vector_of(core_.b2->GetGravity());
-  for (Vector& v : velocities_) v.head<2>() += fall;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    velocities_[i] += (1 - early(links_[i])) * h * forces_[i];
+    velocities_[i].head<2>() += fall;
+  }
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const Member& member = joints_[i];
     rates_[i] = system_.rate_of(i, velocities_);
@@ -342,6 +348,7 @@ void Planar::Core::Assembly::keep(double dt) {
     b.SetAngularVelocity(static_cast<float>(velocities_[i].z()));
     sleep_time(b) = slow;
     flat.solved = true;
+    flat.kicked = false;  // its velocity is that of the end
   }
   for (const Member& member : joints_) keep_impulses(member);
 }

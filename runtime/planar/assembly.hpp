@@ -67,6 +67,7 @@ class Planar::Core::Assembly {
   std::pair<FlatPose, FlatPose> ends_of(std::size_t index, std::span<const FlatPose> poses) const;
   std::pair<Vector, Vector> axis_rows(std::size_t index, std::span<const FlatPose> poses) const;
   void linearize(std::span<const FlatPose> poses);
+  static double early(const Link& link);
   void add_loads(double h, double part);
   void advance_poses(double h);
   bool find_path(double h);

@@ -44,7 +44,7 @@ void Planar::Core::Assembly::aim(std::size_t index, double dt) {
                                                      : std::max(member.high - travel, 0.0) / dt;
 }
 
-/// Of its own axis, as Box2D counts it.
+/// The position of a joint along its own axis, as Box2D counts it.
 double Planar::Core::Assembly::travel_of(std::size_t index, std::span<const FlatPose> poses) const {
   const Member& member = joints_[index];
   const auto [parent, child] = ends_of(index, poses);
@@ -53,7 +53,7 @@ double Planar::Core::Assembly::travel_of(std::size_t index, std::span<const Flat
   return way.dot(parent.rotated(member.axis));
 }
 
-/// Motors that would need more than their strength, and limits that would pull, let go. Whether there were any.
+/// Motors that would need more than their strength, and limits that would pull, are released. Whether there were any.
 bool Planar::Core::Assembly::release() {
   bool any = false;
   for (Member& member : joints_) {

@@ -102,7 +102,7 @@ Planar::Core::Assembly::Common Planar::Core::Assembly::common_motion() const {
   return common;
 }
 
-/// Of a link, as if it moved with all others as a rigid body.
+/// The velocity of a link, as if it moved with all others as a rigid body.
 Planar::Core::Assembly::Vector Planar::Core::Assembly::carried(const Common& common, std::size_t link) const {
   const Vector2 moved = common.velocity[2] * left_of(after_[link].center - common.center);
   return common.velocity + Vector(moved.x(), moved.y(), 0);

@@ -25,7 +25,7 @@ Vector3 inertia(const FlatBody& flat) { return {flat.mass.mass, flat.mass.mass, 
 
 }  // namespace
 
-/// What is connected, each in the order of its springs: what is elsewhere changes nothing, bit for bit.
+/// Connected bodies, each part in the order of its springs: other parts change nothing, bit for bit.
 std::vector<SpringRows::Part> SpringRows::parts() {
   std::vector<Part> all;
   std::vector<int> part_of(nodes_.size(), -1);

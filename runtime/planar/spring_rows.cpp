@@ -98,7 +98,7 @@ void SpringRows::add(FlatJoint& joint) {
   rows_.push_back(row);
 }
 
-/// Inverse inertia that a row feels at an end.
+/// The inverse effective mass of a row at an end.
 double SpringRows::mobility(const End& end) const {
   if (end.node < 0) return 0;
   const MassProperties& mass = node(end.node).flat->mass;

@@ -250,6 +250,8 @@ Scene double_pendulum(bool flat) {
 Scene driven_pendulum(bool flat) {
   Scene scene{flat ? "a motor swings a pendulum, flat" : "a motor swings a pendulum", 0.5,
               flat ? Motion::Flat : Motion::Straight};
+  // The upper arm rotates by the same angle in each sub-step, which single precision rounds in the same direction.
+  if (flat) scene.within = 5e-5;
   scene.build = [](World& world, int) {
     Chain chain;
     Read read = pendulum_of(world, {0, 1}, {2, 0}, chain);
@@ -455,7 +457,7 @@ Scene paddle() {
     drive(world, joint, 1, 200);
     world.set_joint(joint, 0, 1);
     const breve_object block = world.body(box(Vector3(0.4, 0.4, 0.4), 1), Vector3(0.25, 0.2, 0));
-    world.set_velocity(block, Vector3(0.9, 0, 0));
+    world.set_velocity(block, Vector3(0.8, 0, 0));
     world.set_material(arm, 0.2, 0);
     world.set_material(block, 0.2, 0);
     return place_of(block);

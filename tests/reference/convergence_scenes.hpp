@@ -25,6 +25,8 @@ struct Scene {
   Motion motion = Motion::Joints;
   /// Where sliding ends, the error depends on where in a sub-step that is: the largest of some variants does not.
   int variants = 1;
+  /// An absolute error that no step exceeds, where single precision hides the order; 0: the order shows.
+  double within = 0;
   std::function<Read(World&, int variant)> build{};
   std::function<std::vector<double>(double t, int variant)> exact{};  // empty: `reference` at a short step in its place
 };
