@@ -131,7 +131,8 @@ void Planar::Core::rebound(JointIndex index) {
     }
     if (yields > 0) response.give(-(1 + joint.drive.limit_restitution) * rate / yields * change);
   }
-  ledger.limit_loss += (before - response.kinetic()) * settings.unit * settings.unit;
+  // A limit gives nothing: that would be round-off of single precision.
+  ledger.limit_loss += std::max(0.0, before - response.kinetic()) * settings.unit * settings.unit;
   spread(*child, parent ? *parent : *child);
 }
 
