@@ -76,7 +76,7 @@ SpringRows::Vectors SpringRows::pulls(const Part& part) const {
 
 /// The loads that are not worth a further step: far below what single precision makes of the lengths.
 SpringRows::Vectors SpringRows::tolerance(const Part& part) const {
-  constexpr double kForce = 1e-8, kLength = 1e-11;
+  constexpr double kForce = 1e-7, kLength = 1e-10;
   Vectors out(part.nodes.size(), Vector3::Zero());
   for (const Row* row : part.rows) {
     const double least = kForce * std::abs(row->force) + kLength * row->strength * row->size;
@@ -145,7 +145,7 @@ SpringRows::Vectors SpringRows::precondition(const Part& part, const Vectors& di
 
 /// The change of the path that takes this residual away, to a part of it: Newton's next step sees what is left.
 SpringRows::Vectors SpringRows::step_against(const Part& part, const Vectors& diagonal, const Vectors& residual) {
-  constexpr double kPart = 1e-4;
+  constexpr double kPart = 1e-2;
   constexpr std::size_t kMost = 100;
   Vectors x(residual.size(), Vector3::Zero()), left = x;
   add_scaled(left, -1, residual);
@@ -184,10 +184,16 @@ double SpringRows::wrong(const Part& part, const Vectors& residual, const Vector
   return dot(residual, precondition(part, diagonal, residual));
 }
 
-/// As if no spring pulled.
+/// As if springs pulled as they do at the start, where the sub-step follows that; else as if none pulled.
 void SpringRows::start_path(const Part& part) {
-  Vectors loads(part.nodes.size());
-  for (std::size_t i = 0; i < loads.size(); ++i) loads[i] = node(part.nodes[i]).load;
+  constexpr double kFollows = 0.5;
+  Vectors loads(part.nodes.size(), Vector3::Zero());
+  if (std::all_of(part.nodes.begin(), part.nodes.end(), [this](int i) { return node(i).pace < kFollows; })) {
+    for (const int i : part.nodes) node(i).path = node(i).start;
+    evaluate(part);
+    add_scaled(loads, -1, pulls(part));
+  }
+  for (std::size_t i = 0; i < loads.size(); ++i) loads[i] += node(part.nodes[i]).load;
   const Vectors free = mobile(part, loads);
   for (std::size_t i = 0; i < free.size(); ++i)
     node(part.nodes[i]).path = node(part.nodes[i]).start + share(part.nodes[i]) * free[i];

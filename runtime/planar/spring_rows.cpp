@@ -141,18 +141,36 @@ void SpringRows::evaluate_spring(Row& row, double h) {
   row.sideways = std::max(row.force, 0.0) * dt_ / (ends ? to : both);
 }
 
+namespace {
+
+struct Elastic {
+  double force = 0, energy = 0;
+};
+
+/// A spring of that length, without its damper.
+Elastic elastic_of(const SpringDescription& is, bool linear, double length) {
+  if (!linear) {
+    const SpringPull pull = pull_of(is, {length, 0, 0}, Vector3::Zero());
+    return {pull.force, pull.energy};
+  }
+  if (!(length > 0)) return {};  // no direction to pull along
+  const double stretch = length - is.length, force = is.strength * stretch;
+  return {force, 0.5 * force * stretch};
+}
+
+}  // namespace
+
 /// The force for a length that goes from one to another, and the loss in the damper.
 void SpringRows::set_elastic(Row& row, double from, double to) {
   const SpringDescription& is = row.spring->is;
-  const Vector3 none = Vector3::Zero();
-  const SpringPull first = pull_of(is, {from, 0, 0}, none), last = pull_of(is, {to, 0, 0}, none);
+  const bool bends = is.mode != SpringMode::Both || is.maximum_force > 0;
+  const Elastic first = elastic_of(is, !bends, from), last = elastic_of(is, !bends, to);
   const auto slack = [&](double length) {
     return (is.mode == SpringMode::ExpandOnly && length > is.length) ||
            (is.mode == SpringMode::ContractOnly && length < is.length);
   };
   if (slack(from) && slack(to)) return;
   constexpr double kSame = 1e-6;  // of the length: the mean of the forces is exact enough
-  const bool bends = is.mode != SpringMode::Both || is.maximum_force > 0;
   double elastic = row.rule == Rule::End ? last.force : (first.force + last.force) / 2;
   if (row.rule == Rule::Mean && bends && std::abs(to - from) > kSame * (from + to))
     elastic = (last.energy - first.energy) / (to - from);
