@@ -215,6 +215,11 @@ void Positions::end_moves(double h, Rates rates) {
   momentum_.give_pushes(h, pushes_);
 }
 
+/// Whether a mover is a body without joints that springs pull at.
+bool Positions::on_spring(int mover) const {
+  return mover >= static_cast<int>(state_.networks_begin()) && mover < static_cast<int>(state_.networks_end());
+}
+
 /// Notes what contacts and limits struck so that it is nearer, having moved for h seconds with the mean of the
 /// velocities before and after, than it may be. What rests, rolls or slides is not.
 /// @return  whether there is something
@@ -230,7 +235,7 @@ bool Positions::find_struck(double h) {
     const double gap = touch.gap, before = rows_.before(i, true)[0] - rows_.before(i, false)[0];
     const double after = rows_.rate_of(row, true)[0] - rows_.rate_of(row, false)[0];
     // The mean says nothing of the way of what a spring turns meanwhile.
-    const bool turned = !row.ja && !row.jb && rows_.unsteady(i, h);
+    const bool turned = (on_spring(row.a) || on_spring(row.b)) && rows_.unsteady(i, h);
     const double reached = turned ? rows_.gap_now(touch) : gap + 0.5 * h * (before + after);
     if (reached >= std::min(gap, 0.0) - kTouchSkin * state_.size_of_pair(pair)) continue;
     any = true;
@@ -262,7 +267,8 @@ bool Positions::hold_off(double h) {
     const Free& one = state_.free_bodies[i];
     FreeBody& body = state_.free_bodies[i].now;
     const Vector3 smooth(one.free_v[0], one.free_v[1], one.free_v[2]);
-    const bool turned = (smooth - one.before.velocity).norm() > kStrong * h * state_.core.settings.gravity.norm();
+    const bool turned = on_spring(static_cast<int>(i)) &&
+                        (smooth - one.before.velocity).norm() > kStrong * h * state_.core.settings.gravity.norm();
     const Vector3 from = semi || turned ? smooth : one.before.velocity;
     const Vector3 spin = semi ? Vector3(one.free_v[3], one.free_v[4], one.free_v[5]) : one.before.spin;
     const Vector3 way = 0.5 * h * (body.velocity - from);

@@ -36,6 +36,7 @@ class Positions {
   void shorten_winding(double wound, double h);
   void shorten_pushes(double before, double h);
   void take_back_pushes(double part, double h);
+  bool on_spring(int mover) const;
   bool find_struck(double h);
   void book_moves(double sign);
   void book_way(double work, Tree* tree);
