@@ -199,7 +199,8 @@ Trouble Guard::take(MechanicsClient* client, double start, double h) {
   if (balance_.absurd() && !off) return {true, GuardReason::NoSolution, 0, state_.any_body()};
   unexplained_ = std::abs(residual + books_.rotated()) + books_.gained();
   residual_ = residual;
-  const double sums = std::abs(before) + books_.pressed();
+  // Where links jam, what presses is beyond all numbers: its round-off counts up to what still links may have.
+  const double sums = std::abs(before) + std::min(books_.pressed(), energy_of_stillness(state_) / kTiny);
   allowed_ = watch_.tolerated(turnover, h) + kTiny * sums + kStill * weight(state_);
   if (off) return {};
   if (const Trouble deeper = overlaps_.measure(); deeper.found && !state_.squeezed) return deeper;
