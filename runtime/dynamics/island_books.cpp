@@ -101,6 +101,19 @@ void Books::note_smooth() {
 
 bool Books::only_motors() const { return rows_.contacts() == 0 && rows_.limits() == 0; }
 
+/// The work that motors on a tree (null: on all) can do at most along the way of this sub-step, J.
+double Books::most_work_of(const Tree* tree) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < rows_.motors(); ++i) {
+    const MotorRow& motor = rows_.motor(i).motor;
+    Tree& own = *motor.tree;
+    if (tree && &own != tree) continue;
+    articulated::difference(own.model, own.sub_state.q, own.state.q, own.work_v);
+    sum += most_work(motor, own.work_v, rows_.length());
+  }
+  return sum;
+}
+
 /// After the rows' solution, which has not moved anything yet.
 void Books::note_solved() {
   if (!kept_ || !only_motors()) return;
@@ -124,7 +137,8 @@ void Books::close() {
       // The same rates are another motion where their impulses moved the links to: beyond the doubt about their work,
       // motors did not do that.
       const double moved = kinetic - start.solved_kinetic, left = uncancelled(more, start.unexplained);
-      const double most = std::max(rows_.motor_doubt(tree), std::abs(uncancelled(more - moved, start.unexplained)));
+      const double doubt = rows_.motor_doubt(tree), did = std::abs(uncancelled(more - moved, start.unexplained));
+      const double most = did > doubt ? std::max(doubt, std::min(did, most_work_of(tree))) : doubt;
       const double by_motors = std::clamp(left, -most, most);
       ledger.motor_work += by_motors;
       erred = left - by_motors;

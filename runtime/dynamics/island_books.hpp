@@ -43,6 +43,7 @@ class Books {
 
  private:
   bool only_motors() const;  // of rows that do work
+  double most_work_of(const Tree* tree) const;
 
   State& state_;
   Contacts& contacts_;
