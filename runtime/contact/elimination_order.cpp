@@ -76,8 +76,7 @@ void find_order(Workspace& work, const Neighbors& neighbors) {
 
 // The stored part of the matrix is cleared, and each column looked down: a line of the cache for each number.
 constexpr double kLook = 10;
-constexpr double kStored = 3;               // times the band of a row
-constexpr double kNarrowest = 6 * kStored;  // numbers of a row: those of one body
+constexpr double kStored = 3;  // times the band of a row
 
 double row_operations(const Workspace& work) {
   double sum = 0;
@@ -93,15 +92,17 @@ double row_operations(const Workspace& work) {
   return sum;
 }
 
-/// What they are at least, whatever the order: rows, the matrix, and the velocities of each mover among one another.
+/// The operations of one elimination in the best order that there may be: rows, the matrix, and the velocities of each
+/// mover among one another.
 double least_operations(const Workspace& work) {
-  double velocities = 0, sum = row_operations(work);
+  double velocities = 0, widest = 0, sum = row_operations(work);
   for (std::size_t i = 1; i < work.movers.size(); ++i) {
     const double size = work.movers[i].size;
     velocities += size;
+    widest = std::max(widest, size);
     sum += size * size * size / 1.5;
   }
-  return sum + kLook * velocities * std::min(velocities, kNarrowest);
+  return sum + kLook * velocities * std::min(velocities, kStored * widest);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ struct SolveSettings {
   double tolerance = 1e-9;      // m/s; sweeps end early when no contact's velocity changes by more
   double direct_share = 1e300;  // a direct solution only where its operations, counted before, are at most this many
                                 // times those of the sweeps
-  double direct_most = 0;       // or fewer than these
+  double direct_most = 0;       // operations that a direct solution may take in any case
   double swept = 0;             // m/s, instead of `tolerance`, for a solution by sweeps alone; 0: the same
   Meter* meter = nullptr;       // counts the work, and ends it where it is over; null: nobody does
 };

@@ -123,7 +123,8 @@ bool Rows::carries(const NearPair& pair, bool first) const {
   return is_round(state_.shape(body)) || !is_round(state_.shape(other));
 }
 
-/// Where one side's body has taken the point that was at `point` as the sub-step began.
+/// Where one side's body has taken the point that was at `start` as the sub-step began. A link's point goes with the
+/// shortest rotation of its axis.
 Vector3 Rows::taken(const Touch& touch, bool first) const {
   const NearPair& pair = contacts_.pair_of(touch);
   const BodyIndex body = first ? pair.a : pair.b;

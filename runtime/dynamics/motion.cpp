@@ -212,11 +212,14 @@ void rotate_free(FreeBody& body, const Accuracy& accuracy, double time, double h
 double FreeBody::rotate(const Vector3& rotation, double unseen) {
   if (rotation == Vector3::Zero()) return 0;
   const Matrix3& own = solid->inertia;
-  const bool keeps = own == own(0, 0) * Matrix3::Identity() || rotation.norm() * spin.norm() <= unseen;
-  const double before = keeps ? 0 : kinetic();
+  const Quaternion rotated = (rotation_by(rotation) * orientation).normalized();
+  if (own == own(0, 0) * Matrix3::Identity() || rotation.norm() * spin.norm() <= unseen) {
+    orientation = rotated;
+    return 0;
+  }
+  const double before = kinetic();
   const Vector3 momentum = inertia() * spin;
-  orientation = (rotation_by(rotation) * orientation).normalized();
-  if (keeps) return 0;
+  orientation = rotated;
   spin = orientation * own.ldlt().solve(orientation.conjugate() * momentum);
   return kinetic() - before;
 }
