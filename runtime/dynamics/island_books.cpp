@@ -101,15 +101,24 @@ void Books::note_smooth() {
 
 bool Books::only_motors() const { return rows_.contacts() == 0 && rows_.limits() == 0; }
 
-/// The work that motors on a tree (null: on all) can do at most along the way of this sub-step, J.
+/// The work that a tree's motors can do at most along the way of a sub-step of h seconds, J.
+/// @param next  its first motor among the rows, which are in the order of trees; the first of the next tree afterwards
+double Books::most_work_of(Tree& tree, double h, std::size_t& next) const {
+  if (next == rows_.motors() || rows_.motor(next).motor.tree != &tree) return 0;
+  articulated::difference(tree.model, tree.sub_state.q, tree.state.q, tree.work_v);
+  double sum = 0;
+  for (; next < rows_.motors() && rows_.motor(next).motor.tree == &tree; ++next)
+    sum += most_work(rows_.motor(next).motor, tree.work_v, h);
+  return sum;
+}
+
+/// The same for a tree, or for all (null).
 double Books::most_work_of(const Tree* tree) const {
   double sum = 0;
-  for (std::size_t i = 0; i < rows_.motors(); ++i) {
-    const MotorRow& motor = rows_.motor(i).motor;
-    Tree& own = *motor.tree;
-    if (tree && &own != tree) continue;
-    articulated::difference(own.model, own.sub_state.q, own.state.q, own.work_v);
-    sum += most_work(motor, own.work_v, rows_.length());
+  for (std::size_t next = 0; next < rows_.motors();) {
+    Tree& own = *rows_.motor(next).motor.tree;
+    const double most = most_work_of(own, rows_.length(), next);
+    if (!tree || &own == tree) sum += most;
   }
   return sum;
 }
@@ -183,12 +192,7 @@ void Books::settle_motors(double h) {
   std::size_t next = 0;  // rows of motors are in the order of the clusters' trees
   for (Clustered& one : state_.clusters) {
     double most = 0;
-    for (const std::uint32_t index : one.entry->trees) {
-      Tree* tree = state_.core.trees[index].get();
-      articulated::difference(tree->model, tree->sub_state.q, tree->state.q, tree->work_v);
-      for (; next < rows_.motors() && rows_.motor(next).motor.tree == tree; ++next)
-        most += most_work(rows_.motor(next).motor, tree->work_v, h);
-    }
+    for (const std::uint32_t index : one.entry->trees) most += most_work_of(*state_.core.trees[index], h, next);
     all += most;
     if (one.alone()) give_back(one.sub_start.ledger, most, state_.core.trees[one.entry->trees.front()]->ledger);
   }

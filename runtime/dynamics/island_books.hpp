@@ -43,6 +43,7 @@ class Books {
 
  private:
   bool only_motors() const;  // of rows that do work
+  double most_work_of(Tree& tree, double h, std::size_t& next) const;
   double most_work_of(const Tree* tree) const;
 
   State& state_;
