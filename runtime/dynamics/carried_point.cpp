@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "runtime/contact/impact_law.hpp"
+
 namespace breve::island {
 
 namespace {
@@ -44,6 +46,54 @@ std::optional<Vector3> on_cylinder(const Axis& axis, const Vector3& normal, cons
   return along * axis.to + (out * after + off * axis.to.cross(after)) / sine_after;
 }
 
+using Vector2 = Eigen::Vector2d;
+using Matrix2 = Eigen::Matrix2d;
+using Tangents = Eigen::Matrix<double, 3, 2>;
+
+constexpr double kSharp = 1e6;  // the curvature of an edge, relative to that of the whole body
+
+/// 1/m, of the surface of a body that is round about `axis`, in the tangent plane at an arm from its origin.
+Matrix2 curvature(const Round& round, const Vector3& axis, const Vector3& normal, const Vector3& arm,
+                  const Tangents& plane) {
+  constexpr double kFlat = 1e-2;  // rad: it touches with its side, or a cap
+  const double lean = std::abs(normal.dot(axis)), sine = std::sqrt(std::max(0.0, 1 - lean * lean));
+  if (round.is_capsule() && std::abs(arm.dot(axis) - round.radius * normal.dot(axis)) >= round.half)
+    return Matrix2::Identity() / round.radius;
+  if (sine < kFlat) return Matrix2::Zero();
+  const Vector2 around = plane.transpose() * axis.cross(normal) / sine;
+  Matrix2 all = (sine / round.radius) * around * around.transpose();
+  if (round.is_cylinder() && lean > kFlat) {
+    const Vector2 across(-around.y(), around.x());
+    all += (kSharp / round.radius) * across * across.transpose();
+  }
+  return all;
+}
+
+/// The same of a body with faces: none within one, much across an edge, much in both directions at a corner. Surfaces
+/// count as flat.
+Matrix2 curvature(const Shape& shape, const Vector3& arm, const Quaternion& orientation, const Tangents& plane) {
+  constexpr double kOn = 1e-3;     // of the radius: the point lies on a face
+  constexpr double kFacing = 0.1;  // rad: a face that points along the normal
+  const double radius = shape.bounding_radius();
+  const Vector3 own = orientation.conjugate() * arm;
+  Matrix2 all = Matrix2::Zero();
+  if (shape.surface()) return all;
+  for (const Plane& face : shape.polyhedron().planes) {
+    if (std::abs(face.normal.dot(own) - face.offset) > kOn * radius) continue;
+    const Vector2 side = plane.transpose() * (orientation * face.normal);
+    if (side.squaredNorm() > kFacing * kFacing) all += side.normalized() * side.normalized().transpose();
+  }
+  return (kSharp / radius) * all;
+}
+
+Matrix2 curvature(const Rolling& one, const Vector3& normal, const Tangents& plane) {
+  if (!is_round(one.shape)) return curvature(one.shape, one.taken - one.to.location, one.to.orientation, plane);
+  if (one.shape.kind() == ShapeKind::Sphere) return Matrix2::Identity() / one.shape.radius();
+  const Round& round = one.shape.round();
+  const Vector3 axis = one.to.orientation * Vector3::Unit(round.axis), arm = one.taken - one.to.location;
+  return curvature(round, axis, std::copysign(1.0, arm.dot(normal)) * normal, arm, plane);
+}
+
 }  // namespace
 
 bool is_round(const Shape& shape) { return shape.kind() == ShapeKind::Sphere || shape.round().is_round(); }
@@ -63,6 +113,24 @@ Vector3 carried_by(const Shape& shape, const Vector3& point, const Vector3& norm
   const std::optional<Vector3> found =
       round.is_capsule() ? on_capsule(round, axis, normal, arm) : on_cylinder(axis, normal, arm);
   return to.location + found.value_or(shortest(axis, arm));
+}
+
+Meeting carried_between(const Rolling& a, const Rolling& b, const Vector3& normal) {
+  constexpr double kLeast = 1e-9;  // of the larger curvature: where both are flat, they meet in the middle
+  Vector3 first, second;
+  contact::tangents(normal, first, second);
+  Tangents plane;
+  plane << first, second;
+  Matrix2 on_a = curvature(a, normal, plane), on_b = curvature(b, normal, plane);
+  const double least = kLeast * (on_a.trace() + on_b.trace());
+  const Vector3 apart = b.taken - a.taken, middle = 0.5 * (a.taken + b.taken);
+  if (!(least > 0)) return {middle, normal};
+  on_a.diagonal().array() += least;
+  on_b.diagonal().array() += least;
+  const Vector2 x = plane.transpose() * apart, on = (on_a + on_b).inverse() * (on_b * x);
+  const Vector3 point = middle + plane * (on - 0.5 * x);
+  if (!is_round(a.shape) || !is_round(b.shape)) return {point, normal};
+  return {point, (normal - plane * (on_a * on)).normalized()};
 }
 
 }  // namespace breve::island

@@ -17,4 +17,23 @@ Vector3 carried_by(const Shape& shape, const Vector3& point, const Pose& from, c
 /// @param normal  world, a unit vector of either direction
 Vector3 carried_by(const Shape& shape, const Vector3& point, const Vector3& normal, const Pose& from, const Pose& to);
 
+/// A body that touches another.
+struct Rolling {
+  const Shape& shape;
+  Pose to;        // where it is now
+  Vector3 taken;  // where it took the point that was touched, by carried_by() along the normal
+};
+
+/// Where two bodies touch, once both have moved.
+struct Meeting {
+  Vector3 point, normal;
+};
+
+/// The point of contact moves less along the more curved of two surfaces, and the normal follows: for relative motion x
+/// of two surfaces of curvatures A and B in the tangent plane, the point moves by (A + B)^-1 B x on A, and the normal
+/// tilts by A (A + B)^-1 B x (Montana 1988: the kinematics of contact and grasp). A face has no curvature, and an edge
+/// or corner more than anything round; between bodies with faces the normal stays.
+/// @param normal  world, a unit vector from b toward a, as it was
+Meeting carried_between(const Rolling& a, const Rolling& b, const Vector3& normal);
+
 }  // namespace breve::island

@@ -98,6 +98,7 @@ void Rows::make(Motors motors) {
   for (Free& one : state_.loose_bodies()) {
     const Matrix3 r = one.now.orientation.toRotationMatrix();
     contact::Mover& mover = movers_[static_cast<std::size_t>(&one - state_.free_bodies.data())];
+    mover.inverse_mass = 1 / one.now.solid->mass;  // a handler may have set another
     mover.inverse_inertia = r * Eigen::Matrix3d(one.now.solid->inertia).inverse() * r.transpose();
   }
   for (Tree* tree : state_.trees) tree->row_center = articulated::centre_of_mass(tree->model, tree->data);
@@ -133,14 +134,19 @@ Vector3 Rows::taken(const Touch& touch, bool first) const {
                                    : carried_by(state_.shape(body), touch.start, touch.normal, from, to);
 }
 
-/// Where two bodies touch once they have moved: a round body's point goes with its centre, a corner's with its body;
-/// where both are alike and both move, in the middle.
-Vector3 Rows::carried(const Touch& touch) const {
+/// Where two bodies touch once they have moved, and the normal there: a round body's point goes with its centre, a
+/// corner's with its body.
+Meeting Rows::carried(const Touch& touch) const {
   const NearPair& pair = contacts_.pair_of(touch);
   const bool by_a = carries(pair, true), by_b = carries(pair, false);
-  if (by_a && by_b) return 0.5 * (taken(touch, true) + taken(touch, false));
-  if (by_a || by_b) return taken(touch, by_a);
-  return touch.start;
+  if (by_a != by_b) return {taken(touch, by_a), touch.normal};
+  if (!by_a) return {touch.start, touch.normal};
+  const Vector3 from_a = taken(touch, true), from_b = taken(touch, false);
+  const Shape &a = state_.shape(pair.a), &b = state_.shape(pair.b);
+  constexpr double kApart = 1e-4;  // of the smaller body
+  const double apart = kApart * std::min(a.bounding_radius(), b.bounding_radius());
+  if (!((from_a - from_b).squaredNorm() > apart * apart)) return {0.5 * (from_a + from_b), touch.normal};
+  return carried_between({a, state_.pose_of(pair.a), from_a}, {b, state_.pose_of(pair.b), from_b}, touch.normal);
 }
 
 /// m, in the last h seconds, of the arm of a free body's point by the body's rotation. One that is a small part of what
@@ -164,11 +170,12 @@ double Rows::gap_now(const Touch& touch) const {
 
 void Rows::add_touch(Touch& touch) {
   const NearPair& pair = contacts_.pair_of(touch);
-  touch.point = carried(touch);
+  const Meeting now = carried(touch);
+  touch.point = now.point;
   contact::Row row;
   Vector3 t1, t2;
-  contact::tangents(touch.normal, t1, t2);
-  row.axes << touch.normal.transpose(), t1.transpose(), t2.transpose();
+  contact::tangents(now.normal, t1, t2);
+  row.axes << now.normal.transpose(), t1.transpose(), t2.transpose();
   row.static_friction = pair.law.static_friction;
   row.dynamic_friction = pair.law.dynamic_friction;
   row.pair = static_cast<int>(touch.pair);

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "runtime/contact/solver.hpp"
+#include "runtime/dynamics/carried_point.hpp"
 #include "runtime/dynamics/island_contacts.hpp"
 
 namespace breve::island {
@@ -131,7 +132,7 @@ class Rows {
   void respond(Tree& tree, const double* j, double* r) const;
   bool carries(const NearPair& pair, bool first) const;
   Vector3 taken(const Touch& touch, bool first) const;
-  Vector3 carried(const Touch& touch) const;
+  Meeting carried(const Touch& touch) const;
   contact::ScalarRow tree_row(const Tree& tree, const double* j, const double* r) const;
   void add_touch(Touch& touch);
   void add_limit(std::size_t index);
