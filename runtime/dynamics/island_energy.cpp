@@ -80,6 +80,8 @@ double energy_of_stillness(const State& state) {
   double mass = 0;
   for (const Tree* tree : state.trees)
     for (const TreeLink& link : tree->links) mass += link.solid.mass;
+  if (mass > 0)
+    for (const Free& one : state.loose_bodies()) mass += one.now.solid->mass;
   const double slow = kSlow * state.unit();
   return 0.5 * slow * slow * mass;
 }

@@ -21,7 +21,7 @@ double motion_of_trees(State& state);
 double weight(const State& state);
 /// The same of bodies without joints.
 double free_weight(const State& state);
-/// What trees have at most that are still.
+/// What links and bodies that touch them have at most that are still; nothing without links.
 double energy_of_stillness(const State& state);
 /// The state in the world's arrays, while a handler may change it.
 double held_energy(const State& state);

@@ -87,7 +87,7 @@ void Solver::solve_once() {
   constexpr double kStanding = 2e6;  // operations
   settings.direct = fast == 0;
   settings.direct_share = direct_share();
-  if (stands()) settings.direct_most = kStanding;
+  if (stands() || burdened()) settings.direct_most = kStanding;
   // Where `fast` solves directly, no digit that cannot be seen in a step is worth a linear solve.
   constexpr double kUnseen = 1e-3;  // of the speed that is rest
   if (!state_.accuracy.direct) settings.tolerance = std::max(settings.tolerance, kUnseen * contacts_.resting());
@@ -111,6 +111,19 @@ bool Solver::stands() const {
     return one.before.velocity.squaredNorm() <= most * most &&
            radius * radius * one.before.spin.squaredNorm() <= most * most;
   });
+}
+
+/// A body presses on links that are far lighter. The sweeps that find what carries it are as many as the ratio of the
+/// masses: with fewer, it sinks in.
+bool Solver::burdened() const {
+  constexpr double kHeavy = 10;  // times
+  if (state_.trees.empty() || state_.accuracy.direct) return false;
+  for (std::size_t i = 0; i < rows_.contacts(); ++i) {
+    const auto& [touch, pair, row, law] = rows_.contact(i);
+    const double a = state_.natural_response(pair.a), b = state_.natural_response(pair.b);
+    if (std::min(a, b) > 0 && std::max(a, b) > kHeavy * std::min(a, b)) return true;
+  }
+  return false;
 }
 
 /// How many times the operations of the sweeps a direct solution may take: those that a stack would need to come as

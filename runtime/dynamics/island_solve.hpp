@@ -32,6 +32,7 @@ class Solver {
   void find_struck();
   void solve_rows();
   void solve_once();
+  bool burdened() const;
   void solve_rebounding(double h);
   void move_networks_back(double moved_h);
   double share_to_part(double moved_h) const;
