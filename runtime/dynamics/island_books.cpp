@@ -74,6 +74,9 @@ void give_back(const Energy& start, double most, Energy& now) {
 /// At the start of a sub-step, once it is known which touches and limits will be rows.
 void Books::open() {
   kept_ = !state_.trees.empty() && contacts_.any() && !springs_.move();
+  sprung_ = state_.trees.empty() && !state_.networks.empty() && state_.drivers == 0 && contacts_.any() &&
+            !springs_.move() && !state_.accuracy.locate_impacts;
+  if (sprung_) sub_start_ = {state_.followed ? stored_energy(state_) : 0, 0, 0, 0, 0, state_.result.ledger, 0};
   if (!kept_) return;
   double moving = 0;
   for (Clustered& one : state_.clusters) {
@@ -86,7 +89,9 @@ void Books::open() {
 }
 
 /// After smooth motion: what it gained that nothing explains is its error, not the rows'.
-void Books::note_smooth() {
+/// @param free_works  J, what scripts gave bodies without joints, less what dampers between these took
+void Books::note_smooth(double free_works) {
+  if (sprung_) smooth_stored_ = stored_energy(state_), smooth_works_ = free_works;
   if (!kept_) return;
   sub_start_.smooth_kinetic = 0;
   for (Clustered& one : state_.clusters) {
@@ -138,6 +143,7 @@ void Books::note_solved() {
 /// After the works of smooth motion and of the rows went to the ledger.
 void Books::close() {
   momentum_.note_touched();
+  if (sprung_ && !rows_.empty()) close_networks();
   if (!kept_ || rows_.empty()) return;
   double erred = 0;  // J, by the motion that motors changed
   const auto close = [&](const SubStepEnergy& start, double stored, double kinetic, const Tree* tree, Energy& ledger) {
@@ -182,6 +188,42 @@ void Books::close() {
   if (little) return;
   gained_ += gained;
   unpaid_ += gained - taken;
+}
+
+/// Of bodies on springs that contacts push. Errors of smooth motion keep within bounds only where nothing disturbs it:
+/// in the parts of a sub-step they would add up.
+void Books::close_networks() {
+  if (!rows_.push()) return;
+  constexpr double kErred = 0.1;  // of the energy in motion: what is taken back at once
+  const double started = smooth_stored_ - smooth_works_, tiny = kTiny * std::abs(smooth_stored_);
+  Energy& ledger = state_.result.ledger;
+  ledger.contact_loss -= missing(stored_energy(state_) - started, sub_start_.ledger, ledger);
+  settle_exchange(sub_start_.ledger, ledger);
+  lent_ += std::max(0.0, rows_took(sub_start_.ledger) - rows_took(ledger));
+  if (lent_ > tiny) {
+    const double taken = pay(lent_, 1);
+    lent_ -= taken;
+    ledger.contact_loss += taken;
+  }
+  if (!state_.followed) return;
+  erred_ += started - sub_start_.stored;
+  if (erred_ > tiny) erred_ -= pay(erred_, kErred);
+}
+
+/// The motion of bodies without joints pays for energy that they were given.
+/// @param most  of it, that pays
+/// @return      J, that it paid
+double Books::pay(double given, double most) {
+  const Common common = momentum_.common_of_free_bodies();
+  if (!(common.inner > 0)) return 0;
+  const double taken = std::min(given, most * common.inner);
+  momentum_.slow_free_bodies(common, taken);
+  return taken;
+}
+
+/// @param pushed  J, that pushing bodies out of overlaps gave
+void Books::settle_pushes(double pushed) {
+  if (sprung_ && pushed > 0) state_.result.ledger.contact_loss += pay(pushed, kFew);
 }
 
 /// Once positions were put right after a sub-step of h seconds. Motors work at most by their strength along the way on

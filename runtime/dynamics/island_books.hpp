@@ -4,6 +4,8 @@
 // taken back from the motion of links among one another.
 #pragma once
 
+#include <optional>
+
 #include "runtime/dynamics/island_momentum.hpp"
 #include "runtime/dynamics/island_springs.hpp"
 
@@ -14,13 +16,14 @@ class Books {
   Books(State& state, Contacts& contacts, ContactSprings& springs, Rows& rows, Momentum& momentum)
       : state_(state), contacts_(contacts), springs_(springs), rows_(rows), momentum_(momentum) {}
 
-  void begin_try() { gained_ = unpaid_ = 0; }
+  void begin_try() { gained_ = unpaid_ = lent_ = erred_ = 0; }
   void open();
   bool kept() const { return kept_; }  // open() found rows to come
-  void note_smooth();
+  void note_smooth(double free_works);
   void note_solved();
   void close();
   void settle_motors(double h);
+  void settle_pushes(double pushed);
   /// J, that contacts of free bodies did because the bodies rotated: of order 1 of the sub-step. It is in the ledger,
   /// and finer sub-steps make it smaller.
   double rotated() const { return state_.trees.empty() ? rows_.rotated() : 0; }
@@ -36,12 +39,16 @@ class Books {
   double gained() const { return gained_; }  // J, that contacts and limits gave in this try of the step, but for little
 
   // Energies of the sub-step, J.
+  /// After smooth motion, in an island with bodies on springs and without joints; else nothing.
+  std::optional<double> smooth_stored() const { return sprung_ ? std::optional(smooth_stored_) : std::nullopt; }
   double kinetic() const { return sub_start_.kinetic; }
   double smooth_kinetic() const { return sub_start_.smooth_kinetic; }
   double predicted() const { return sub_start_.predicted; }
   void set_predicted(double energy) { sub_start_.predicted = energy; }
 
  private:
+  void close_networks();
+  double pay(double given, double most);
   bool only_motors() const;  // of rows that do work
   double most_work_of(Tree& tree, double h, std::size_t& next) const;
   double most_work_of(const Tree* tree) const;
@@ -55,7 +62,11 @@ class Books {
   double stored_ = 0;        // J, where note_start() was called
   Energy ledger_;            // likewise
   bool kept_ = false;
+  bool sprung_ = false;  // open() found rows to come for bodies on springs, in an island without joints
   double gained_ = 0, unpaid_ = 0;
+  // Of bodies on springs in this step, J: what contacts gave, and what smooth motion erred by, less what motion paid.
+  double lent_ = 0, erred_ = 0;
+  double smooth_stored_ = 0, smooth_works_ = 0;  // J, of these after smooth motion, and its works less its losses
 };
 
 }  // namespace breve::island

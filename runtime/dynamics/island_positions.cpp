@@ -27,7 +27,8 @@ Positions::Positions(State& state, Contacts& contacts, Rows& rows, Momentum& mom
       momentum_(momentum),
       pushes_(state.memory),
       scalar_pushes_(state.memory),
-      struck_(state.memory) {}
+      struck_(state.memory),
+      shares_(state.memory) {}
 
 double Positions::softness(const NearPair& pair) const {
   return kYield * (state_.natural_response(pair.a) + state_.natural_response(pair.b));
@@ -225,6 +226,7 @@ bool Positions::on_spring(int mover) const {
 /// @return  whether there is something
 bool Positions::find_struck(double h) {
   struck_.assign(rows_.movers().size(), 0);
+  shares_.assign(state_.free_bodies.size(), 0.0);
   bool any = false;
   // Where impacts are located, only what rotates toward a row from afar comes too near; `balanced` does not see that.
   const bool all = contacts_.spent() || state_.trees.empty();
@@ -239,8 +241,14 @@ bool Positions::find_struck(double h) {
     const double reached = turned ? rows_.gap_now(touch) : gap + 0.5 * h * (before + after);
     if (reached >= std::min(gap, 0.0) - kTouchSkin * state_.size_of_pair(pair)) continue;
     any = true;
-    if (row.a >= 0) struck_[static_cast<std::size_t>(row.a)] = 1;
-    if (row.b >= 0) struck_[static_cast<std::size_t>(row.b)] = 1;
+    const double way = turned && state_.trees.empty() ? 0.5 * h * rows_.normal_change(i) : 0;
+    const double share = way > 0 ? std::min(1.0, (std::min(gap, 0.0) - reached) / way) : 1;
+    for (const int mover : {row.a, row.b}) {
+      if (mover < 0) continue;
+      const auto at = static_cast<std::size_t>(mover);
+      struck_[at] = 1;
+      if (at < shares_.size()) shares_[at] = std::max(shares_[at], on_spring(mover) ? share : 1);
+    }
   }
   for (std::size_t i = 0; i < rows_.limits(); ++i) {
     const auto& [bound, row] = rows_.limit(i);
@@ -254,7 +262,8 @@ bool Positions::find_struck(double h) {
 }
 
 /// Contacts that are solved only at the end of a sub-step of h seconds must not come nearer than they are: a body that
-/// contacts struck has moved, in the end, with the velocity that they left it, not with the mean.
+/// contacts struck has moved, in the end, with the velocity that they left it, not with the mean. One that springs turn
+/// meanwhile moves no farther than it has to: farther, it would wind them up.
 /// @return  whether there was one
 bool Positions::hold_off(double h) {
   if (!find_struck(h)) return false;
@@ -271,10 +280,11 @@ bool Positions::hold_off(double h) {
                         (smooth - one.before.velocity).norm() > kStrong * h * state_.core.settings.gravity.norm();
     const Vector3 from = semi || turned ? smooth : one.before.velocity;
     const Vector3 spin = semi ? Vector3(one.free_v[3], one.free_v[4], one.free_v[5]) : one.before.spin;
-    const Vector3 way = 0.5 * h * (body.velocity - from);
+    const double moved_h = 0.5 * h * shares_[i];
+    const Vector3 way = moved_h * (body.velocity - from);
     body.center += way;
     book_way(one.now.force.dot(way), nullptr);
-    body.rotate(0.5 * h * (body.spin - spin), contacts_.unseen_spin(one));
+    body.rotate(moved_h * (body.spin - spin), contacts_.unseen_spin(one));
   }
   const bool touched = momentum_.touched_from_outside();
   for (const Clustered& one : state_.clusters)

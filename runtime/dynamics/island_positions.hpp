@@ -49,6 +49,7 @@ class Positions {
   std::pmr::vector<contact::Push> pushes_;  // of contact rows
   std::pmr::vector<double> scalar_pushes_;  // of scalar rows: the velocity that puts them right, m/s or rad/s
   std::pmr::vector<std::uint8_t> struck_;   // of movers: contacts changed its velocity
+  std::pmr::vector<double> shares_;         // likewise, of free bodies: of the way that this moves one
 };
 
 }  // namespace breve::island

@@ -185,6 +185,11 @@ double Rows::response(const contact::ScalarRow& row) const {
   return Eigen::Map<const articulated::Vector>(row.ja, size).dot(Eigen::Map<const articulated::Vector>(row.ra, size));
 }
 
+bool Rows::push() const {
+  return std::any_of(rows_.begin(), rows_.end(),
+                     [](const contact::Row& row) { return row.impulse != Vector3::Zero(); });
+}
+
 /// J, that the impulses of the last solution would give alone, to bodies that were free.
 double Rows::pressure() const {
   double sum = 0;

@@ -75,6 +75,8 @@ class Rows {
   std::span<const contact::ScalarRow> scalars() const { return scalars_; }
   std::span<const contact::Law> laws() const { return laws_; }
   bool empty() const { return rows_.empty() && scalars_.empty(); }
+  /// Some contact gave an impulse.
+  bool push() const;
   bool is_motor(std::size_t scalar) const { return scalar - limits_.size() < motors_.size(); }
   /// Holds what was solved last, to be solved again with other biases: by Positions, for the rows as they are.
   contact::Workspace& workspace() { return workspace_; }

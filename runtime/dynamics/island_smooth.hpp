@@ -16,6 +16,8 @@ class SmoothMotion {
   /// After the rows of h seconds were solved, in the movers' v: the works of the last motion, corrected by what the
   /// rows' impulses changed.
   void correct_works(double h);
+  /// J, that scripts gave free bodies in the last motion, less what dampers between these took.
+  double free_works() const { return free_work_ - networks_.loss(); }
   void commit();  // the last motion counts: its works go to the ledger
 
  private:

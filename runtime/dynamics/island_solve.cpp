@@ -253,9 +253,10 @@ void Solver::move_networks_back(double moved_h) {
   }
 }
 
-void Solver::move_by_impulses(double moved_h) {
+void Solver::move_by_impulses(double moved_h, std::optional<double> smooth) {
   const bool springs = !state_.networks.empty() && rows_.contacts() > 0 && state_.trees.empty() && state_.drivers == 0;
-  const double taken = springs ? taken_by_rows(state_) : 0, before = springs ? energy_of_free(state_) + taken : 0;
+  const double taken = springs ? taken_by_rows(state_) : 0;
+  const double before = !springs ? 0 : smooth ? *smooth : energy_of_free(state_) + taken;
   find_struck();
   double gained = 0;
   for (Free& one : state_.free_bodies) {

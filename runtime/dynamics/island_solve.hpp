@@ -1,6 +1,8 @@
 // The solution of an island's rows after smooth motion, and how it moves what it changed.
 #pragma once
 
+#include <optional>
+
 #include "runtime/dynamics/island_predict.hpp"
 #include "runtime/dynamics/island_rebound.hpp"
 
@@ -20,7 +22,8 @@ class Solver {
   void solve_after(double h);
   /// Positions follow what the impulses changed, for so many seconds; before it, how much of that way trees may go.
   void limit_moves(double moved_h);
-  void move_by_impulses(double moved_h);
+  /// @param smooth  J, of the island after smooth motion, where that is known
+  void move_by_impulses(double moved_h, std::optional<double> smooth = std::nullopt);
   double direct_share() const;
 
  private:
@@ -29,10 +32,10 @@ class Solver {
   void bound_motors(double h);
   bool shorten_couples(double h);
   bool stands() const;
+  bool burdened() const;
   void find_struck();
   void solve_rows();
   void solve_once();
-  bool burdened() const;
   void solve_rebounding(double h);
   void move_networks_back(double moved_h);
   double share_to_part(double moved_h) const;

@@ -8,6 +8,7 @@
 #include "runtime/articulated/impulse.hpp"
 #include "runtime/articulated/kinematics.hpp"
 #include "runtime/base/error.hpp"
+#include "runtime/dynamics/network_motion.hpp"
 
 namespace breve::island {
 
@@ -141,6 +142,57 @@ void Step::fast(double start, double h) {
 void Step::take_fast(double time, double h) {
   sub_step_.look(h, true);
   if (state_.meter.ended()) return;  // what touches was not looked for to the end
+  state_.followed = false;
+  if (const int parts = spring_parts(h); parts > 1)
+    take_parts(time, h, parts);
+  else
+    take_looked(time, h);
+}
+
+/// A sub-step of h seconds, of which nothing has been taken yet.
+void Step::take_parts(double time, double h, int parts) {
+  const double part = h / parts, gone = gone_;
+  state_.followed = true;
+  for (int i = 0; i < parts; ++i) {
+    gone_ = gone + i * part;
+    if (state_.unaffordable()) return finish(used_up(), time + i * part, h - i * part);
+    sub_step_.look(part, true);
+    if (state_.meter.ended()) return;
+    take_looked(time + i * part, part);
+  }
+}
+
+/// Whether a contact that was found may push bodies of the network.
+bool Step::meets(const NetworkCluster& network) const {
+  const int first = static_cast<int>(network.first);
+  const int end = first + static_cast<int>(network.entry->points->trees().size());
+  const auto in = [&](BodyIndex body) {
+    const int mover = state_.slot_of(body).mover;
+    return mover >= first && mover < end;
+  };
+  return std::any_of(contacts_.touches().begin(), contacts_.touches().end(), [&](const Touch& touch) {
+    const NearPair& pair = contacts_.pair_of(touch);
+    return in(pair.a) || in(pair.b);
+  });
+}
+
+/// Into how many parts a sub-step of h seconds goes in which contacts push bodies on springs: the rows at its end push
+/// as if no spring pulled back meanwhile. Few bodies may take more parts.
+int Step::spring_parts(double h) const {
+  constexpr double kFollowed = 2, kPartPhase = 0.5;  // rad, by a bound of the fastest oscillation
+  constexpr double kMost = 16, kMostOfFew = 64;      // parts
+  constexpr double kLooks = 512;                     // at a body or a pair, for parts of one sub-step
+  if (state_.networks.empty() || state_.finished) return 1;
+  double fastest = 0;
+  for (const NetworkCluster& one : state_.networks)
+    if (meets(one)) fastest = std::max(fastest, one.entry->points->fastest());
+  if (!(fastest * h > kFollowed)) return 1;
+  const double items = static_cast<double>(state_.free_bodies.size() + state_.pairs.size());
+  return static_cast<int>(std::min(std::ceil(fastest * h / kPartPhase), std::clamp(kLooks / items, kMost, kMostOfFew)));
+}
+
+/// After a look.
+void Step::take_looked(double time, double h) {
   for (Bound& bound : contacts_.bounds())
     bound.rests = bound.gap + h * std::min(0.0, 2 * bound.rate) <= kLimitSkin * bound.unit;
   sub_step_.open(h);

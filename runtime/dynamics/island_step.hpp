@@ -26,6 +26,10 @@ class Step {
   void undisturbed(double start, double h);
   void fast(double start, double h);
   void take_fast(double time, double h);
+  void take_parts(double time, double h, int parts);
+  void take_looked(double time, double h);
+  bool meets(const NetworkCluster& network) const;
+  int spring_parts(double h) const;
   void located(MechanicsClient* client, double start, double h);
   bool look(double time, double sub);
   Trouble fastest_motion() const;

@@ -151,7 +151,7 @@ void SubStep::move_by_rows(double h) {
   smooth_.correct_works(h);
   state_.store_velocities();
   books_.note_solved();
-  solver_.move_by_impulses(0.5 * h);
+  solver_.move_by_impulses(0.5 * h, books_.smooth_stored());
   positions_.put_back(h, positions_.hold_off(h));
 }
 
@@ -169,14 +169,14 @@ bool SubStep::missed(double h) {
 
 /// After smooth motion of h seconds: its books, and those of a motion without what was predicted if that misled it.
 void SubStep::check_prediction(double time, double h) {
-  books_.note_smooth();
+  books_.note_smooth(smooth_.free_works());
   state_.place(h);
   for (const bool all : {false, true}) {
     if (!prediction_.misled(h)) return;
     all ? prediction_.forget() : prediction_.forget_contacts();
     state_.restore();
     move(time, h);
-    books_.note_smooth();
+    books_.note_smooth(smooth_.free_works());
     state_.place(h);
   }
 }
@@ -195,7 +195,9 @@ void SubStep::keep(double part, double took) {
 }
 
 void SubStep::put_right(double h) {
+  const double before = state_.result.ledger.contact_loss;
   positions_.push_apart(h);
+  books_.settle_pushes(before - state_.result.ledger.contact_loss);
   loops_.close();
   if (by_rows_) books_.take_gain();
   books_.settle_motors(h);

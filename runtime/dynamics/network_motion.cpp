@@ -11,9 +11,10 @@ namespace {
 // How far the fastest oscillation rotates in a part, rad. The scheme of order 4 is stable up to 2.6; energy errs by 3
 // in 1,000 at 1, and by 4 in 100 at 1.75, where it is all in that oscillation. Leapfrog's period errs by 1 in 10,000 at
 // 0.05.
-constexpr double kPartPhase = 1, kPartPhaseFast = 1.75, kSlowPhase = 0.05, kStablePhase = 2;
+constexpr double kPartPhase = 1, kPartPhaseFast = 1.75, kPartPhaseFew = 0.25, kSlowPhase = 0.05, kStablePhase = 2;
 constexpr double kMostNetworkParts = 32;  // finer steps are left to step control
-// So few springs have hardly any slower oscillations that hold the energy, and shorter parts of them cost nothing.
+// So few springs have hardly any slower oscillations that hold the energy, and shorter parts of them cost nothing. On
+// `fast`, contacts change from step to step how long these are, and each time what the energy errs by then remains.
 constexpr std::size_t kFewSprings = 16;
 
 bool acts_alone(const Dynamics::Core& core, const Tree& tree) {
@@ -82,13 +83,16 @@ bool NetworkMotion::read(const Dynamics::Core& core) {
 }
 
 bool NetworkMotion::begin(const Dynamics::Core& core, Rung rung, double h) {
-  const double longest = rung == Rung::Fast ? kPartPhaseFast : kPartPhase;
-  most_phase_ = edges_.size() > kFewSprings ? longest : kPartPhase;
+  constexpr double kMostPulls = 8192;  // springs times parts, on `fast`
+  const bool fast = rung == Rung::Fast, few = edges_.size() <= kFewSprings;
+  const double longest = fast ? kPartPhaseFast : kPartPhase;
+  most_phase_ = few ? (fast ? kPartPhaseFew : kPartPhase) : longest;
+  const double pulls = fast ? kMostPulls / static_cast<double>(edges_.size()) : 0;
   if (version_ != core.springs_version) {
     version_ = core.springs_version;
     plain_ = read(core);
   }
-  if (!plain_ || !(fastest_ * h <= kMostNetworkParts * longest)) return false;
+  if (!plain_ || !(fastest_ * h <= std::max(kMostNetworkParts * longest, pulls * most_phase_))) return false;
   for (std::size_t i = 0; i < still_.size(); ++i) {
     const auto& [body, at] = still_[i];
     if (core.bodies->velocity(body) != Vector3::Zero() || core.bodies->rotational_velocity(body) != Vector3::Zero())

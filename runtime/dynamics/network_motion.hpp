@@ -47,7 +47,8 @@ class NetworkMotion : public InMemory {
   /// Moves the points by h seconds. Springs that are too stiff for one part count as softer if `in_one`.
   /// @return  evaluations of the forces
   int step(double h, bool in_one, Meter& meter);
-  double loss() const { return loss_; }    // J, in the dampers, in the last step
+  double fastest() const { return fastest_; }  // rad/s: no oscillation is faster
+  double loss() const { return loss_; }        // J, in the dampers, in the last step
   double swung() const { return swung_; }  // J, the most that the points moved with as a part of the last step ended
   /// N*s, of the dampers on a body, in the last step.
   const Vector3& drag(std::size_t body) const { return drags_[body]; }
