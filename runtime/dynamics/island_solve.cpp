@@ -120,6 +120,7 @@ bool Solver::burdened() const {
   if (state_.trees.empty() || state_.accuracy.direct) return false;
   for (std::size_t i = 0; i < rows_.contacts(); ++i) {
     const auto& [touch, pair, row, law] = rows_.contact(i);
+    if (row.ja && (row.b < 0 || row.jb)) continue;  // links alone
     const double a = state_.natural_response(pair.a), b = state_.natural_response(pair.b);
     if (std::min(a, b) > 0 && std::max(a, b) > kHeavy * std::min(a, b)) return true;
   }
