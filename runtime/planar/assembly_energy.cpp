@@ -147,7 +147,8 @@ void Planar::Core::Assembly::take_back(double dt) {
     link.flat = core_.find(link.body);
     if (!link.flat || link.flat->fixed || link.flat->solved || link.flat->set_apart) return;
     if (!link.flat->b2->IsAwake()) return;
-    given += core_.held_work(*link.flat, link.flat->b2->GetLinearVelocity(), dt);
+    const b2Vec2 moved_by = link.flat->b2->GetLinearVelocity();
+    given += core_.held_work(*link.flat, moved_by, dt) + core_.lifted(*link.flat, moved_by, dt);
     has += core_.motion_of(*link.flat);
   }
   for (const Member& member : joints_) {

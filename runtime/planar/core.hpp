@@ -53,6 +53,9 @@ struct FlatBody {
   bool missed = false;       // what steps came near it while it was set apart: it is to have a contact yet
   bool solved = false;       // its assembly was solved as a whole in this sub-step
   bool fresh = false;        // it has contacts that are in no order yet
+  bool flown = false;        // it has taken this sub-step in flight
+  bool looked_at = false;    // whether it rebounds in flight
+  bool forced = false;       // springs or a force method may act on it
   int touching = 0;          // contacts that touch
   b2Body* b2 = nullptr;
   b2Vec2 at{0, 0}, before{0, 0};             // the centre of mass and its velocity at the start of the sub-step
@@ -66,6 +69,7 @@ struct FlatBody {
   std::uint32_t part = kNoSlot;   // of what is solved
   std::uint32_t assembly = kNoSlot;
   double thickness = 0;             // half its narrowest width, length units
+  double reach = 0;                 // of its shape from its centre of mass, length units
   double twist = 0;                 // N*m, with `pull`
   Vector2 pull = Vector2::Zero();   // of springs and joints in this sub-step, N
   Vector2 force = Vector2::Zero();  // set by scripts, N
@@ -106,6 +110,8 @@ struct Strike {
 
 using BodyPair = std::pair<BodyIndex, BodyIndex>;
 
+class SpringRows;
+
 struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   Core(std::pmr::memory_resource* memory, Bodies& bodies);
   ~Core() override;
@@ -143,6 +149,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   double step_length = 0;             // s, of the sub-step that is being taken, uncut
   double lightest = 0, heaviest = 0;  // kg, of bodies that move by themselves, in this sub-step
   bool any_missed = false;            // some body has missed contacts
+  bool landed_hard = false;           // some body has, in this sub-step
   bool joints_made = false;           // since they were last put in order
   std::size_t fresh_contacts = 0;     // at most so many are in no order yet
   std::exception_ptr failure;         // what went wrong in a callback of Box2D, which must come to its end all the same
@@ -257,6 +264,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void take_velocity(FlatBody& flat);
 
   // loads.cpp: forces of a sub-step
+  std::unique_ptr<SpringRows> spring_rows;  // made when there are some; keeps its memory
   void apply_forces(double dt);
   void apply_springs(double dt);
   void ask_forces();
@@ -295,7 +303,16 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void number_groups(double dt);
   void step_pieces(double dt);
   void step_meeting(double dt);
+  void step_groups(double dt);
   void make_missed_contacts();
+
+  // flights.cpp: bodies that rebound in flight
+  class Flight;
+  struct Unfinished {
+    double left = 0;  // s, of the sub-step
+    std::pmr::vector<BodyIndex> bodies;
+  };
+  std::pmr::vector<Unfinished> take_flights(double dt);
 
   // order.cpp: of what Box2D solves
   ContactKey key_of(const b2Contact& contact) const;
@@ -338,6 +355,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
     bool handled = false;
     JointIndex stop = kNoJoint;       // that a joint reaches, instead of two shapes
     BodyPair pair{kNoBody, kNoBody};  // the lower index first: of what meets at one moment, the lowest comes first
+    double closing = 0;               // length units/s, at which the shapes approach then
   };
   /// Which first touches are looked for.
   struct Sought {
@@ -349,6 +367,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   std::pmr::vector<BodyIndex> meeting(double dt);
   template <class F>
   void each_approach(double dt, const Sought& sought, const F& f);
+  double most_approach(const FlatBody& a, const FlatBody& b, double dt) const;
   void consider(b2Fixture* a, int child_a, b2Fixture* b, int child_b, bool handled, double dt, Hit& best, bool& found);
   void look_around(FlatBody& flat, double dt, Hit& best, bool& found);
   void deliver(const Hit& hit, double moment);
@@ -363,6 +382,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void PreSolve(b2Contact* contact, const b2Manifold* old) override;
   void PostSolve(b2Contact* contact, const b2ContactImpulse* impulse) override;
   void note_driven_work(b2Contact* contact, const b2ContactImpulse& impulse);
+  bool lands_hard(b2Contact& contact) const;
   bool ShouldCollide(b2Fixture* a, b2Fixture* b) override;
   contact::Law law_of(const FlatBody& a, const FlatBody& b) const;
   void refresh(b2Contact* contact);
@@ -388,6 +408,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void end_ledger(double dt);
   double take_back(FlatBody& flat, double given);
   double held_work(const FlatBody& flat, const b2Vec2& moved_by, double dt) const;
+  double lifted(const FlatBody& flat, const b2Vec2& moved_by, double dt) const;
   Energy energy() const;
   double springs_energy() const;
   double joint_rate(const FlatJoint& joint) const;
@@ -400,7 +421,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
     double kinetic = 0, stored = 0, works = 0, losses = 0;  // J
     double slack = 0;  // J, that lifts what is awake by the overlap in which bodies rest
   };
-  Balance balance() const;
+  Balance balance(double in_springs) const;
   double rounding_of_springs() const;
   bool watch_energy(const Balance& before, double moment);
   GuardAction remedy() const;

@@ -87,6 +87,17 @@ std::unique_ptr<b2Shape> shape_of(const FlatPiece& piece, double unit) {
   return circle;
 }
 
+/// The distance of the farthest point of a shape from a center.
+double reach_of(const Outline& outline, const Vector2& center) {
+  double farthest = 0;
+  for (const FlatPiece& piece : outline.pieces) {
+    if (piece.kind == FlatPiece::Kind::Circle)
+      farthest = std::max(farthest, (piece.center - center).norm() + piece.radius);
+    for (const Vector2& point : piece.points) farthest = std::max(farthest, (point - center).norm());
+  }
+  return farthest;
+}
+
 /// @throws Error{Argument} where Box2D cannot have such a body
 b2MassData mass_data(const MassProperties& mass, double unit) {
   const Vector3& c = mass.center_of_mass;
@@ -136,6 +147,7 @@ void Planar::Core::fit(FlatBody& flat) {
   for (std::uint32_t number = 0; number < pieces.size(); ++number) add_fixture(flat, *pieces[number], number);
   if (flat.fixed) return;
   flat.mass = mass;
+  flat.reach = reach_of(outline, mass.center_of_mass.head<2>()) / settings.unit;
   flat.b2->SetMassData(&data);
 }
 

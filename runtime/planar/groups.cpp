@@ -160,8 +160,30 @@ void Planar::Core::step_pieces(double dt) {
   now = start + dt;
 }
 
-/// A sub-step of what steps: each group in which something bounces is cut there by itself, all others take it at once.
+/// A sub-step of what steps: what rebounds in flight takes it apart from all else.
 void Planar::Core::step_meeting(double dt) {
+  step_length = dt;
+  const std::pmr::vector<Unfinished> unfinished = take_flights(dt);
+  if (std::none_of(slots.begin(), slots.end(), [](const FlatBody& flat) { return flat.flown; })) return step_groups(dt);
+  const float before = last_step;
+  const double start = now;
+  for (const auto& [left, bodies_left] : unfinished) {
+    const Apart apart(*this, [&all = bodies_left](const FlatBody& flat) {
+      return std::find(all.begin(), all.end(), flat.body) != all.end();
+    });
+    last_step = before;
+    now = start + dt - left;
+    step(left);
+    end_cuts(dt);
+  }
+  last_step = before;
+  now = start;
+  const Apart rest(*this, [](const FlatBody& flat) { return !flat.flown; });
+  step_groups(dt);
+}
+
+/// A sub-step of what steps: each group in which something bounces is cut there by itself, all others take it at once.
+void Planar::Core::step_groups(double dt) {
   step_length = dt;
   located = 0;
   const std::pmr::vector<BodyIndex> meets = meeting(dt);

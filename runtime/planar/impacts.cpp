@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runtime/contact/impact_law.hpp"
 #include "runtime/planar/core.hpp"
@@ -60,6 +61,20 @@ b2Transform Planar::Core::transform_after(const FlatBody& flat, double t) const 
   return at;
 }
 
+/// More than points of two bodies come together within dt, length units.
+double Planar::Core::most_approach(const FlatBody& a, const FlatBody& b, double dt) const {
+  const b2Vec2 v = a.b2->GetLinearVelocity() - b.b2->GetLinearVelocity();
+  double most = dt * double{v.Length()} + double{b2_linearSlop};
+  for (const FlatBody* flat : {&a, &b}) {
+    const double spin = std::abs(double{flat->b2->GetAngularVelocity()});
+    if (flat->fixed && spin > 0) return std::numeric_limits<double>::infinity();
+    most += dt * spin * flat->reach;
+    if (!flat->fixed)
+      most += dt * dt / 2 * (settings.gravity.norm() + flat->force.norm() / flat->mass.mass) / settings.unit;
+  }
+  return most;
+}
+
 void Planar::Core::consider(b2Fixture* a, int child_a, b2Fixture* b, int child_b, bool handled, double dt, Hit& best,
                             bool& found) {
   const FlatBody &x = of(a->GetBody()), &y = of(b->GetBody());
@@ -72,6 +87,7 @@ void Planar::Core::consider(b2Fixture* a, int child_a, b2Fixture* b, int child_b
   constexpr std::uint64_t kUnits = 20;  // of work
   counters.work += kUnits;
   const Proxy pa(a, child_a), pb(b, child_b);
+  if (gap_between(pa, a->GetBody()->GetTransform(), pb, b->GetBody()->GetTransform()) > most_approach(x, y, dt)) return;
   b2TOIInput in;
   in.proxyA = pa.proxy;
   in.proxyB = pb.proxy;
@@ -98,9 +114,10 @@ void Planar::Core::consider(b2Fixture* a, int child_a, b2Fixture* b, int child_b
   double t = out.state == b2TOIOutput::e_overlapped ? 0 : double{out.t} * dt;
   // Newton's method on the path of the step.
   const double little = 0.01 * dt;
+  double rate = 0;
   for (int i = 0; i < 4; ++i) {
     const double gap = gap_at(t);
-    const double rate = t >= little ? (gap - gap_at(t - little)) / little : (gap_at(t + little) - gap) / little;
+    rate = t >= little ? (gap - gap_at(t - little)) / little : (gap_at(t + little) - gap) / little;
     if (!(rate < 0)) {
       if (gap > 0) return;  // they pass
       break;
@@ -113,7 +130,7 @@ void Planar::Core::consider(b2Fixture* a, int child_a, b2Fixture* b, int child_b
   const double moves_on = gap_at(std::min(dt, t + little)) - gap_at(t);
   if (t == 0 && !(moves_on < 0)) return;  // they part
   if (found && (best.t < t || (best.t == t && best.pair <= pair))) return;
-  best = {a, b, child_a, child_b, t, handled, kNoJoint, pair};
+  best = {a, b, child_a, child_b, t, handled, kNoJoint, pair, -rate};
   found = true;
 }
 

@@ -9,6 +9,7 @@
 
 #include "runtime/base/error.hpp"
 #include "runtime/planar/assembly.hpp"
+#include "runtime/planar/spring_rows.hpp"
 
 namespace breve {
 

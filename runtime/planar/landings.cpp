@@ -1,10 +1,11 @@
 // Landings on light bodies. Box2D starts each step from the impulses of the last one, and its sweeps hardly converge
 // where something heavy presses on something light. The impulse that stopped a heavy body would therefore push it up
-// again in the next step, and so create energy; long chains of joints that spin gain energy for the same reason. If
-// bodies of very different masses touch or are joined and one of them has struck hard, or if contacts and joints have
-// given energy, the solver of runtime/contact replaces Box2D's velocities of all that is connected with them: it solves
-// the impact first, without rebound (bodies that rebound have collided before), then the forces of the sub-step. Only
-// the impulses of the second solution start the next step.
+// again in the next step, and so create energy; stacks that land and long chains of joints that spin gain energy for
+// the same reason. If one of some bodies that touch has struck hard, and either they are of very different masses or
+// they are stacked and not too many, or if contacts and joints have given energy, the solver of runtime/contact
+// replaces Box2D's velocities of all that is connected with them: it solves the impact first, without rebound (bodies
+// that rebound have collided before), then the forces of the sub-step. Only the impulses of the second solution start
+// the next step.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,7 +20,8 @@ constexpr double kUneven = 4;  // ratio of two masses, from which Box2D's sweeps
 // What strikes so deep in a sub-step, or as after a fall from so high, is solved at once; both are parts of the smaller
 // body's radius of gyration.
 constexpr double kDeep = 0.1, kHigh = 0.25;
-constexpr double kGain = 0.002;  // of the energy of motion: what contacts may err by
+constexpr double kGain = 0.002;   // of the energy of motion: what contacts may err by
+constexpr int kMostPoints = 100;  // of a stack of similar masses: Box2D goes on with more of them
 
 bool moves(const FlatBody* flat) { return flat && !flat->fixed; }
 
@@ -34,8 +36,12 @@ struct Together {
   std::uint32_t next;  // one of them that stands for more of them; itself at last
   double gain = 0;     // J, that contacts and joints gave beyond the work of motors
   double allowed = 0;  // J, of that
-  bool uneven = false, joined = false, struck = false;
-  bool suspect() const { return (uneven && struck) || ((uneven || joined) && gain > allowed); }
+  int points = 0;      // of contacts
+  bool uneven = false, joined = false, struck = false, stacked = false;
+  bool suspect() const {
+    const bool solves = uneven || (stacked && points <= kMostPoints);
+    return (struck && solves) || ((uneven || joined) && gain > allowed);
+  }
 };
 
 /// Which bodies touch or are joined, by their slots, and what a sub-step did to them.
@@ -107,6 +113,8 @@ void Landings::weigh_contact(const FlatBody& a, const FlatBody& b, b2Contact* co
   all.uneven = all.uneven || uneven(&a, &b);
   // What scripts move may give energy.
   if (a.driven || b.driven) all.allowed = std::numeric_limits<double>::infinity();
+  all.points += contact->GetManifold()->pointCount;
+  all.stacked = all.stacked || (moves(&a) && moves(&b));
   if (all.struck) return;
   const double size = std::min(size_of(a), size_of(b)), speed = strike_of(a, b, contact), u = core_.settings.unit;
   all.struck = speed * dt_ > kDeep * size || (speed * u > core_.slowest_bounce(core_.law_of(a, b)) &&
@@ -151,7 +159,7 @@ double Landings::strike_of(const FlatBody& a, const FlatBody& b, b2Contact* cont
 }  // namespace
 
 void Planar::Core::settle_landings(double dt) {
-  if (joints.empty() && !(heaviest > kUneven * lightest)) return;
+  if (joints.empty() && !(heaviest > kUneven * lightest) && !landed_hard) return;
   Landings landings(*this, dt);
   for (FlatBody& flat : slots) flat.gathered = false;
   for (FlatBody& flat : slots) {

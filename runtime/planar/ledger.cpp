@@ -3,8 +3,10 @@
 // stored is computed in double precision from Box2D's numbers.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runtime/planar/core.hpp"
+#include "runtime/planar/doors.hpp"
 
 namespace breve {
 
@@ -30,7 +32,8 @@ double Planar::Core::kinetic_of(const FlatBody& flat) const {
 }
 
 /// What the guard compares before and after a step: what is stored, less what came and went with bodies.
-Planar::Core::Balance Planar::Core::balance() const {
+/// @param in_springs  the energy that springs store now, J
+Planar::Core::Balance Planar::Core::balance(double in_springs) const {
   Balance now_is;
   const double lift = settings.gravity.norm() * b2_linearSlop * settings.unit;
   for (const FlatBody& flat : slots) {
@@ -39,7 +42,7 @@ Planar::Core::Balance Planar::Core::balance() const {
     now_is.kinetic += motion_of(flat);
     now_is.stored += kinetic_of(flat);
   }
-  now_is.stored += springs_energy() - base;
+  now_is.stored += in_springs - base;
   now_is.works = ledger.motor_work + ledger.script_work;
   now_is.losses = ledger.contact_loss + ledger.friction_loss + ledger.drag_loss + ledger.limit_loss;
   return now_is;
@@ -129,14 +132,21 @@ bool Planar::Core::is_solved(const FlatJoint& joint) const {
 /// @return       J, that this took
 double Planar::Core::take_back(FlatBody& flat, double given) {
   constexpr double kFlies = 4;  // times that energy: what lies has hardly any
-  if (!(given > 0) || flat.jointed || flat.pulled || !flat.b2->IsAwake()) return 0;
+  constexpr double kSingle = 2 * double{std::numeric_limits<float>::epsilon()};
+  // Rounding of its height is not taken back.
+  const double weight = flat.mass.mass * settings.gravity.norm() * settings.unit;
+  if (!(given > kSingle * weight * double{flat.b2->GetWorldCenter().Length()}) || flat.jointed || flat.pulled ||
+      !flat.b2->IsAwake())
+    return 0;
   const double has = motion_of(flat);
   if (!(has > kFlies * given)) return 0;
   for (const b2ContactEdge* edge = flat.b2->GetContactList(); edge; edge = edge->next)
     if (edge->contact->IsTouching() && !(of(edge->other).fixed && !of(edge->other).driven)) return 0;
   const auto left = static_cast<float>(std::sqrt(1 - given / has));
+  const float slow = sleep_time(*flat.b2);  // a velocity that is set would begin it anew
   flat.b2->SetLinearVelocity(left * flat.b2->GetLinearVelocity());
   flat.b2->SetAngularVelocity(left * flat.b2->GetAngularVelocity());
+  sleep_time(*flat.b2) = slow;
   return given;
 }
 
@@ -153,36 +163,42 @@ double Planar::Core::held_work(const FlatBody& flat, const b2Vec2& moved_by, dou
          (flat.mass.inertia(2, 2) * (w - w_before) - dt * (flat.torque + flat.twist)) * (w + w_before) / 2;
 }
 
+/// The energy of the height that a body has gained beyond the way on which its velocity took it, J: it was moved out of
+/// overlaps, joints were closed, or it had another velocity before it struck something.
+/// @param moved_by  the velocity by which Box2D has moved it
+double Planar::Core::lifted(const FlatBody& flat, const b2Vec2& moved_by, double dt) const {
+  if (flat.solved) return 0;
+  const Vector2 path = vector_of(flat.b2->GetWorldCenter()) - vector_of(flat.at) - dt * vector_of(moved_by);
+  return -flat.mass.mass * settings.unit * settings.gravity.head<2>().dot(path);
+}
+
 /// Gives back what was taken off, takes back what contacts gave, and writes down what the sub-step did.
 void Planar::Core::end_ledger(double dt) {
   const double u = settings.unit;
-  double held_back = 0;              // work of all that joins and touches
-  double forced = 0, put_right = 0;  // that of forces that scripts set, and of what Box2D moved apart or together
-  const b2Vec2 down = b2->GetGravity();
+  double held_back = 0;          // work of all that joins and touches
+  double forced = 0, lifts = 0;  // that of forces that scripts set, and of what was moved without velocity
   for (FlatBody& flat : slots) {
     if (flat.body == kNoBody || flat.fixed || flat.set_apart) continue;
     const b2Vec2 moved_by = flat.b2->GetLinearVelocity();
     if (flat.kicked && flat.b2->IsAwake()) flat.b2->SetLinearVelocity(flat.b2->GetLinearVelocity() + flat.kick);
     flat.kicked = false;
     const b2Vec2 v = flat.b2->GetLinearVelocity();
-    // Box2D moves by the velocity at the end; what else was moved are overlaps and gaps that it put right.
-    const b2Vec2 path = flat.b2->GetWorldCenter() - flat.at - static_cast<float>(dt) * moved_by;
-    if (!flat.solved) put_right -= flat.mass.mass * u * u * double{b2Dot(down, path)};
-    const double w = flat.b2->GetAngularVelocity();
+    const double w = flat.b2->GetAngularVelocity(), lift = lifted(flat, moved_by, dt);
     const Vector2 sum(u * (double{v.x} + flat.before.x), u * (double{v.y} + flat.before.y));
     const double spins = w + double{flat.before_spin};
-    if (sum == Vector2::Zero() && spins == 0) continue;
-    const Vector2 force = flat.force + flat.asked;
-    const double held = held_work(flat, moved_by, dt);
+    const bool moves = sum != Vector2::Zero() || spins != 0;
+    if (!moves && lift == 0) continue;
+    const double held = lift + (moves ? held_work(flat, moved_by, dt) : 0);
     // Joints do no work on what was solved as a whole: what its energy errs by shows in the residual.
     if (!flat.solved) held_back += held - take_back(flat, held);
+    lifts += lift;
+    const Vector2 force = flat.force + flat.asked;
     if (flat.has_force || flat.asked != Vector2::Zero()) forced += dt * (force.dot(sum) + flat.torque * spins) / 2;
   }
   if (!std::isfinite(held_back)) {  // nor is any other work of this sub-step
     spoiled = true;
     return;
   }
-  pushed += put_right;
   ledger.script_work += forced;
   double motors = 0;  // of joints whose assemblies may touch something
   for (const FlatJoint& joint : joints) {
@@ -193,7 +209,13 @@ void Planar::Core::end_ledger(double dt) {
   }
   ledger.script_work += driven_work;
   // The rest is lost where bodies touch; if it came in, nothing explains it, and it shows in the residual.
-  const double lost = std::max(0.0, motors + driven_work - held_back);
+  const double rest = motors + driven_work - held_back, lost = std::max(0.0, rest);
+  const double lifted_most = std::clamp(lifts, 0.0, std::max(-rest, 0.0));
+  // What scripts move also lifts others out of the overlaps that it makes.
+  if (driven_work != 0)
+    ledger.script_work += lifted_most;
+  else
+    pushed += lifted_most;
   const double rubbed = std::min(friction, lost);
   ledger.friction_loss += rubbed;
   ledger.contact_loss += lost - rubbed;

@@ -6,7 +6,9 @@ namespace breve {
 
 /// Springs and dampers, of joints and between bodies.
 void Planar::Core::apply_springs(double dt) {
-  SpringRows rows(*this, dt);
+  if (!spring_rows) spring_rows = std::make_unique<SpringRows>(*this);
+  SpringRows& rows = *spring_rows;
+  rows.begin(dt);
   bool any = false;
   for (FlatJoint& joint : joints) {
     if (!joint.used || !steps(joint)) continue;

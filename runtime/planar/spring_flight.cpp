@@ -61,7 +61,8 @@ void SpringRows::find_assembly(FlatBody& flat) {
   constexpr double kDamped = 1;
   for (const BodyIndex body : all)
     if (node(node_of(core_.find(body))).damped > kDamped) return;
-  Assembly& made = assemblies_.emplace_back(Assembly{Response(core_, nullptr, &flat), {}});
+  Assembly& made =
+      assemblies_.emplace_back(Assembly{Response(core_, nullptr, &flat), std::pmr::vector<int>(core_.memory)});
   for (FlatBody* one : made.response.bodies()) {
     const int i = node_of(one);
     made.nodes.push_back(i);

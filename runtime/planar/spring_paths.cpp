@@ -10,161 +10,177 @@ namespace breve {
 
 namespace {
 
-double dot(const std::vector<Vector3>& a, const std::vector<Vector3>& b) {
+using Vectors = std::pmr::vector<Vector3>;
+
+double dot(const Vectors& a, const Vectors& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
   return sum;
 }
 
 /// to += factor * by
-void add_scaled(std::vector<Vector3>& to, double factor, const std::vector<Vector3>& by) {
+void add_scaled(Vectors& to, double factor, const Vectors& by) {
   for (std::size_t i = 0; i < to.size(); ++i) to[i] += factor * by[i];
 }
 
 Vector3 inertia(const FlatBody& flat) { return {flat.mass.mass, flat.mass.mass, flat.mass.inertia(2, 2)}; }
 
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
 }  // namespace
 
 /// Connected bodies, each part in the order of its springs: other parts change nothing, bit for bit.
-std::vector<SpringRows::Part> SpringRows::parts() {
-  std::vector<Part> all;
-  std::vector<int> part_of(nodes_.size(), -1);
+void SpringRows::make_parts() {
+  part_count_ = 0;
+  part_of_.assign(nodes_.size(), -1);
   const auto of = [&](int i) -> Part& {
-    int& known = part_of[static_cast<std::size_t>(root_of(i))];
-    if (known < 0) {
-      known = static_cast<int>(all.size());
-      all.emplace_back();
-    }
-    return all[static_cast<std::size_t>(known)];
+    int& known = part_of_[index(root_of(i))];
+    if (known >= 0) return parts_[index(known)];
+    known = static_cast<int>(part_count_++);
+    if (parts_.size() < part_count_) parts_.emplace_back(core_.memory);
+    Part& fresh = parts_[index(known)];
+    fresh.nodes.clear();
+    fresh.rows.clear();
+    fresh.assemblies.clear();
+    return fresh;
   };
   for (int i = 0; i < static_cast<int>(nodes_.size()); ++i) {
     Part& part = of(i);
-    node(i).at = part.nodes.size();
+    node(i).at = static_cast<int>(part.nodes.size());
     part.nodes.push_back(i);
   }
   for (const Assembly& one : assemblies_) of(one.nodes.front()).assemblies.push_back(&one);
   for (Row& row : rows_)
     if (const int at = std::max(row.ends[0].node, row.ends[1].node); at >= 0) of(at).rows.push_back(&row);
-  return all;
+}
+
+/// What its equations need again and again lies side by side.
+void SpringRows::take_part(const Part& part) {
+  const std::size_t count = part.nodes.size();
+  for (Vectors* all :
+       {&inertias_, &residual_, &tolerance_, &diagonal_, &step_, &left_, &ahead_, &way_, &pushed_, &scratch_})
+    all->resize(count);
+  shares_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    inertias_[i] = inertia(*node(part.nodes[i]).flat);
+    shares_[i] = share(part.nodes[i]);
+  }
 }
 
 /// The accelerations by these loads, as joints allow them.
-SpringRows::Vectors SpringRows::mobile(const Part& part, const Vectors& loads) const {
-  Vectors out(part.nodes.size());
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = loads[i].cwiseQuotient(inertia(*node(part.nodes[i]).flat));
+void SpringRows::mobile(const Part& part, const Vectors& loads, Vectors& out) const {
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = loads[i].cwiseQuotient(inertias_[i]);
   const double u = core_.settings.unit;
   for (const Assembly* one : part.assemblies) {
     Response::Vector impulses(one->response.size());
     for (std::size_t k = 0; k < one->nodes.size(); ++k)
       impulses.segment<3>(static_cast<Eigen::Index>(3 * k)) =
-          loads[node(one->nodes[k]).at].cwiseQuotient(Vector3(u, u, u * u));
+          loads[index(node(one->nodes[k]).at)].cwiseQuotient(Vector3(u, u, u * u));
     const Response::Vector change = one->response.answer(impulses);
     for (std::size_t k = 0; k < one->nodes.size(); ++k)
-      out[node(one->nodes[k]).at] = change.segment<3>(static_cast<Eigen::Index>(3 * k)).cwiseProduct(Vector3(u, u, 1));
+      out[index(node(one->nodes[k]).at)] =
+          change.segment<3>(static_cast<Eigen::Index>(3 * k)).cwiseProduct(Vector3(u, u, 1));
   }
-  return out;
 }
 
-/// What the rows that depend on the path pull back.
-SpringRows::Vectors SpringRows::pulls(const Part& part) const {
-  Vectors out(part.nodes.size(), Vector3::Zero());
+/// What the rows that depend on the path pull back, times a sign.
+void SpringRows::add_pulls(const Part& part, double sign, Vectors& out) const {
   for (const Row* row : part.rows)
     for (const End& end : row->ends)
-      if (row->rule != Rule::Now && end.node >= 0) out[node(end.node).at] += row->force * end.along;
-  return out;
-}
-
-/// The loads that are not worth a further step: far below what single precision makes of the lengths.
-SpringRows::Vectors SpringRows::tolerance(const Part& part) const {
-  constexpr double kForce = 1e-7, kLength = 1e-10;
-  Vectors out(part.nodes.size(), Vector3::Zero());
-  for (const Row* row : part.rows) {
-    const double least = kForce * std::abs(row->force) + kLength * row->strength * row->size;
-    for (const End& end : row->ends)
-      if (row->rule != Rule::Now && end.node >= 0) out[node(end.node).at] += least * end.along.cwiseAbs();
-  }
-  for (const int i : part.nodes)
-    out[node(i).at] += kLength * node(i).start.cwiseAbs().cwiseProduct(inertia(*node(i).flat)) / share(i);
-  return out;
+      if (row->rule != Rule::Now && end.node >= 0) out[index(node(end.node).at)] += sign * row->force * end.along;
 }
 
 /// x is velocities; by the time in which they come about.
-SpringRows::Vectors SpringRows::times_inertia(const Part& part, const Vectors& x) const {
-  Vectors out(x.size());
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = x[i].cwiseProduct(inertia(*node(part.nodes[i]).flat)) / share(part.nodes[i]);
-  return out;
+void SpringRows::times_inertia(const Vectors& x, Vectors& out) const {
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = x[i].cwiseProduct(inertias_[i]) / shares_[i];
 }
 
-SpringRows::Vectors SpringRows::residual(const Part& part) {
+void SpringRows::set_residual(const Part& part) {
   evaluate(part);
-  Vectors gained(part.nodes.size());
-  for (std::size_t i = 0; i < gained.size(); ++i) gained[i] = node(part.nodes[i]).path - node(part.nodes[i]).start;
-  Vectors out = times_inertia(part, gained);
-  add_scaled(out, 1, pulls(part));
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] -= node(part.nodes[i]).load;
-  return out;
+  for (std::size_t i = 0; i < scratch_.size(); ++i) scratch_[i] = node(part.nodes[i]).path - node(part.nodes[i]).start;
+  times_inertia(scratch_, residual_);
+  std::fill(scratch_.begin(), scratch_.end(), Vector3::Zero());
+  add_pulls(part, 1, scratch_);
+  add_scaled(residual_, 1, scratch_);
+  for (std::size_t i = 0; i < residual_.size(); ++i) residual_[i] -= node(part.nodes[i]).load;
 }
 
-/// By the derivative of the residual, without what makes it indefinite: springs that are compressed and swing out.
-SpringRows::Vectors SpringRows::multiply(const Part& part, const Vectors& x) const {
-  Vectors out = times_inertia(part, x);
+/// The derivative of the residual, without what makes it indefinite: springs that are compressed and swing out; and the
+/// loads that are not worth a further step, far below what single precision makes of the lengths.
+void SpringRows::linearize(const Part& part) {
+  constexpr double kForce = 1e-7, kLength = 1e-10;
+  couplings_.clear();
+  std::fill(tolerance_.begin(), tolerance_.end(), Vector3::Zero());
+  for (std::size_t i = 0; i < diagonal_.size(); ++i) diagonal_[i] = inertias_[i] / shares_[i];
   for (const Row* row : part.rows) {
     if (row->rule == Rule::Now) continue;
-    double along = 0, across = 0;
-    for (const End& end : row->ends) {
+    const double least = kForce * std::abs(row->force) + kLength * row->strength * row->size;
+    Coupling& made = couplings_.emplace_back();
+    made.stiff = row->stiff;
+    made.sideways = row->sideways;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const End& end = row->ends[i];
+      made.at[i] = end.node < 0 ? -1 : node(end.node).at;
+      made.along[i] = end.along;
+      made.across[i] = end.across;
       if (end.node < 0) continue;
-      along += end.along.dot(x[node(end.node).at]);
-      across += end.across.dot(x[node(end.node).at]);
+      tolerance_[index(made.at[i])] += least * end.along.cwiseAbs();
+      diagonal_[index(made.at[i])] += made.stiff * end.along.cwiseAbs2() + made.sideways * end.across.cwiseAbs2();
     }
-    for (const End& end : row->ends)
-      if (end.node >= 0) out[node(end.node).at] += row->stiff * along * end.along + row->sideways * across * end.across;
   }
-  return out;
+  for (std::size_t i = 0; i < tolerance_.size(); ++i)
+    tolerance_[i] += kLength * node(part.nodes[i]).start.cwiseAbs().cwiseProduct(inertias_[i]) / shares_[i];
 }
 
-SpringRows::Vectors SpringRows::diagonal(const Part& part) const {
-  Vectors out = times_inertia(part, Vectors(part.nodes.size(), Vector3::Ones()));
-  for (const Row* row : part.rows)
-    for (const End& end : row->ends)
-      if (row->rule != Rule::Now && end.node >= 0)
-        out[node(end.node).at] += row->stiff * end.along.cwiseAbs2() + row->sideways * end.across.cwiseAbs2();
-  return out;
+/// By that derivative.
+void SpringRows::multiply(const Vectors& x, Vectors& out) const {
+  times_inertia(x, out);
+  for (const Coupling& one : couplings_) {
+    double along = 0, across = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (one.at[i] < 0) continue;
+      along += one.along[i].dot(x[index(one.at[i])]);
+      across += one.across[i].dot(x[index(one.at[i])]);
+    }
+    const double pull = one.stiff * along, side = one.sideways * across;
+    for (std::size_t i = 0; i < 2; ++i)
+      if (one.at[i] >= 0) out[index(one.at[i])] += pull * one.along[i] + side * one.across[i];
+  }
 }
 
-SpringRows::Vectors SpringRows::precondition(const Part& part, const Vectors& diagonal, const Vectors& x) const {
-  Vectors out = part.assemblies.empty() ? Vectors(x.size()) : mobile(part, x);
+void SpringRows::precondition(const Part& part, const Vectors& x, Vectors& out) const {
+  if (!part.assemblies.empty()) mobile(part, x, out);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    if (node(part.nodes[i]).held)
-      out[i] *= share(part.nodes[i]);
+    if (!part.assemblies.empty() && node(part.nodes[i]).held)
+      out[i] *= shares_[i];
     else
-      out[i] = x[i].cwiseQuotient(diagonal[i]);
+      out[i] = x[i].cwiseQuotient(diagonal_[i]);
   }
-  return out;
 }
 
-/// The change of the path that takes this residual away, to a part of it: Newton's next step sees what is left.
-SpringRows::Vectors SpringRows::step_against(const Part& part, const Vectors& diagonal, const Vectors& residual) {
+/// The change of the path that takes the residual away, to a part of it: Newton's next step sees what is left.
+void SpringRows::find_step(const Part& part) {
   constexpr double kPart = 1e-2;
   constexpr std::size_t kMost = 100;
-  Vectors x(residual.size(), Vector3::Zero()), left = x;
-  add_scaled(left, -1, residual);
-  Vectors ahead = precondition(part, diagonal, left), way = ahead;
-  double size = dot(left, ahead);
+  const std::size_t count = step_.size();
+  std::fill(step_.begin(), step_.end(), Vector3::Zero());
+  for (std::size_t i = 0; i < count; ++i) left_[i] = -residual_[i];
+  precondition(part, left_, ahead_);
+  way_ = ahead_;
+  double size = dot(left_, ahead_);
   const double enough = kPart * kPart * size;
-  for (std::size_t i = 0; i < std::min(kMost, 3 * x.size() + 3) && size > enough; ++i) {
+  for (std::size_t i = 0; i < std::min(kMost, 3 * count + 3) && size > enough; ++i) {
     looks_ += part.rows.size();
-    const Vectors pushed = multiply(part, way);
-    const double bends = dot(way, pushed);
+    multiply(way_, pushed_);
+    const double bends = dot(way_, pushed_);
     if (!(bends > 0)) break;
-    add_scaled(x, size / bends, way);
-    add_scaled(left, -size / bends, pushed);
-    ahead = precondition(part, diagonal, left);
-    const double next = dot(left, ahead);
-    for (std::size_t k = 0; k < way.size(); ++k) way[k] = ahead[k] + next / size * way[k];
+    add_scaled(step_, size / bends, way_);
+    add_scaled(left_, -size / bends, pushed_);
+    precondition(part, left_, ahead_);
+    const double next = dot(left_, ahead_);
+    for (std::size_t k = 0; k < count; ++k) way_[k] = ahead_[k] + next / size * way_[k];
     size = next;
   }
-  return x;
 }
 
 /// What a path outside of flight has least of, J: its residual is the gradient of this, by h.
@@ -180,47 +196,50 @@ double SpringRows::merit(const Part& part) const {
   return sum;
 }
 
-double SpringRows::wrong(const Part& part, const Vectors& residual, const Vectors& diagonal) const {
-  return dot(residual, precondition(part, diagonal, residual));
+/// The square of a residual, as its diagonal weighs it.
+double SpringRows::wrong(const Part& part, const Vectors& residual) {
+  precondition(part, residual, scratch_);
+  return dot(residual, scratch_);
 }
 
 /// As if springs pulled as they do at the start, where the sub-step follows that; else as if none pulled.
 void SpringRows::start_path(const Part& part) {
   constexpr double kFollows = 0.5;
-  Vectors loads(part.nodes.size(), Vector3::Zero());
+  std::fill(left_.begin(), left_.end(), Vector3::Zero());
   if (std::all_of(part.nodes.begin(), part.nodes.end(), [this](int i) { return node(i).pace < kFollows; })) {
     for (const int i : part.nodes) node(i).path = node(i).start;
     evaluate(part);
-    add_scaled(loads, -1, pulls(part));
+    add_pulls(part, -1, left_);
   }
-  for (std::size_t i = 0; i < loads.size(); ++i) loads[i] += node(part.nodes[i]).load;
-  const Vectors free = mobile(part, loads);
-  for (std::size_t i = 0; i < free.size(); ++i)
-    node(part.nodes[i]).path = node(part.nodes[i]).start + share(part.nodes[i]) * free[i];
+  for (std::size_t i = 0; i < left_.size(); ++i) left_[i] += node(part.nodes[i]).load;
+  mobile(part, left_, ahead_);
+  for (std::size_t i = 0; i < ahead_.size(); ++i)
+    node(part.nodes[i]).path = node(part.nodes[i]).start + shares_[i] * ahead_[i];
 }
 
 /// @param lands  nothing flies: each step must lower the merit, else it must lower the residual
 /// @return       whether the path is exact to single precision
 bool SpringRows::find_path(const Part& part, bool lands) {
   const int most = lands ? 30 : 12, halvings = lands ? 20 : 4;
+  take_part(part);
   start_path(part);
-  Vectors left = residual(part);
+  set_residual(part);
   for (int k = 0; k < most; ++k) {
-    const Vectors scale = diagonal(part);
-    const double size = wrong(part, left, scale), before = lands ? merit(part) : 0;
-    if (!(size > wrong(part, tolerance(part), scale))) return true;
-    const Vectors step = step_against(part, scale, left);
+    linearize(part);
+    const double size = wrong(part, residual_), before = lands ? merit(part) : 0;
+    if (!(size > wrong(part, tolerance_))) return true;
+    find_step(part);
     double taken = 0, length = 1;
     for (int i = 0; i < halvings; ++i, length /= 2) {
-      for (std::size_t j = 0; j < step.size(); ++j) node(part.nodes[j]).path += (length - taken) * step[j];
+      for (std::size_t j = 0; j < step_.size(); ++j) node(part.nodes[j]).path += (length - taken) * step_[j];
       taken = length;
-      left = residual(part);
-      if (lands ? merit(part) < before : wrong(part, left, scale) < size) break;
+      set_residual(part);
+      if (lands ? merit(part) < before : wrong(part, residual_) < size) break;
     }
   }
   constexpr double kClose = 100;
-  const Vectors scale = diagonal(part);
-  return wrong(part, left, scale) <= kClose * kClose * wrong(part, tolerance(part), scale);
+  linearize(part);
+  return wrong(part, residual_) <= kClose * kClose * wrong(part, tolerance_);
 }
 
 /// Springs so stiff that the bodies may swing around each other within a sub-step leave no path in flight.
@@ -257,16 +276,17 @@ void SpringRows::give(Row& row) {
 
 /// What flies gets half of its acceleration after it was moved.
 void SpringRows::give(const Part& part) {
-  Vectors loads = pulls(part);
-  for (std::size_t i = 0; i < loads.size(); ++i) loads[i] = node(part.nodes[i]).load - loads[i];
-  const Vectors gains = mobile(part, loads);
-  for (std::size_t i = 0; i < gains.size(); ++i) {
+  std::fill(left_.begin(), left_.end(), Vector3::Zero());
+  add_pulls(part, 1, left_);
+  for (std::size_t i = 0; i < left_.size(); ++i) left_[i] = node(part.nodes[i]).load - left_[i];
+  mobile(part, left_, ahead_);
+  for (std::size_t i = 0; i < ahead_.size(); ++i) {
     const Node& one = node(part.nodes[i]);
     one.flat->flies = one.flies;
     if (!one.flies) continue;
-    const Vector2 kick = dt_ / 2 / core_.settings.unit * gains[i].head<2>();
+    const Vector2 kick = dt_ / 2 / core_.settings.unit * ahead_[i].head<2>();
     one.flat->kick = {static_cast<float>(kick.x()), static_cast<float>(kick.y())};
-    one.flat->spin_kick = static_cast<float>(dt_ / 2 * gains[i].z());
+    one.flat->spin_kick = static_cast<float>(dt_ / 2 * ahead_[i].z());
   }
 }
 
@@ -275,8 +295,10 @@ void SpringRows::solve() {
   sum_paces();
   choose_rules();
   set_loads();
-  for (const Part& part : parts()) {
-    const bool flies = std::any_of(part.nodes.begin(), part.nodes.end(), [this](int i) { return node(i).flies; });
+  make_parts();
+  for (std::size_t i = 0; i < part_count_; ++i) {
+    const Part& part = parts_[i];
+    const bool flies = std::any_of(part.nodes.begin(), part.nodes.end(), [this](int k) { return node(k).flies; });
     if (!find_path(part, !flies) && flies) land(part);
     give(part);
   }

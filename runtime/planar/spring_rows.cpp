@@ -15,12 +15,38 @@ Vector2 rotated(const Vector2& v, double angle) {
 
 }  // namespace
 
-SpringRows::SpringRows(Planar::Core& core, double dt)
-    : core_(core), dt_(dt), nodes_(core.memory), rows_(core.memory), node_of_(core.memory) {}
+SpringRows::SpringRows(Planar::Core& core)
+    : core_(core),
+      nodes_(core.memory),
+      rows_(core.memory),
+      node_of_(core.memory),
+      assemblies_(core.memory),
+      parts_(core.memory),
+      part_of_(core.memory),
+      inertias_(core.memory),
+      shares_(core.memory),
+      couplings_(core.memory),
+      residual_(core.memory),
+      tolerance_(core.memory),
+      diagonal_(core.memory),
+      step_(core.memory),
+      left_(core.memory),
+      ahead_(core.memory),
+      way_(core.memory),
+      pushed_(core.memory),
+      scratch_(core.memory) {}
+
+void SpringRows::begin(double dt) {
+  dt_ = dt;
+  nodes_.clear();
+  rows_.clear();
+  node_of_.assign(core_.slots.size(), -1);
+  assemblies_.clear();
+  looks_ = 0;
+}
 
 int SpringRows::node_of(FlatBody* flat) {
   if (!flat || flat->fixed) return -1;
-  if (node_of_.empty()) node_of_.resize(core_.slots.size(), -1);
   int& known = node_of_[static_cast<std::size_t>(flat - core_.slots.data())];
   if (known >= 0) return known;
   known = static_cast<int>(nodes_.size());
@@ -53,6 +79,20 @@ SpringRows::End SpringRows::end_of(BodyIndex body, const Vector3& own, Vector2& 
   return end;
 }
 
+/// Whether its force is not just in proportion to its stretch.
+bool SpringRows::bends(const SpringDescription& is) { return is.mode != SpringMode::Both || is.maximum_force > 0; }
+
+/// A spring of that length, without its damper.
+SpringRows::Elastic SpringRows::elastic_of(const SpringDescription& is, double length) {
+  if (bends(is)) {
+    const SpringPull pull = pull_of(is, {length, 0, 0}, Vector3::Zero());
+    return {pull.force, pull.energy};
+  }
+  if (!(length > 0)) return {};  // no direction to pull along
+  const double stretch = length - is.length, force = is.strength * stretch;
+  return {force, 0.5 * force * stretch};
+}
+
 void SpringRows::add(FlatSpring& spring) {
   Row row;
   row.spring = &spring;
@@ -62,6 +102,8 @@ void SpringRows::add(FlatSpring& spring) {
   row.ends[0] = end_of(spring.is.a, spring.is.point_a, from);
   row.ends[1] = end_of(spring.is.b, spring.is.point_b, to);
   row.way = to - from;
+  row.from = row.way.norm();
+  row.first = elastic_of(spring.is, row.from);
   connect(row.ends[0].node, row.ends[1].node);
   rows_.push_back(row);
 }
@@ -106,14 +148,14 @@ double SpringRows::mobility(const End& end) const {
 }
 
 void SpringRows::move_end(End& end, double h) const {
-  end.moved = h * end.velocity;
+  end.moved = end.node < 0 ? Vector2(h * end.velocity) : Vector2(h * node(end.node).path.head<2>());
   end.mean = end.arm;
-  if (end.node < 0) return;
-  const Vector3& path = node(end.node).path;
-  end.moved = h * path.head<2>();
-  if (end.arm == Vector2::Zero()) return;
-  // The point moves along a chord; this arm gives the torque about the centre of mass that does the same work.
-  const double half = h * path.z() / 2;
+  if (end.node >= 0 && end.arm != Vector2::Zero()) rotate_end(end, h);
+}
+
+/// The point moves along a chord; this arm gives the torque about the centre of mass that does the same work.
+void SpringRows::rotate_end(End& end, double h) const {
+  const double half = h * node(end.node).path.z() / 2;
   end.moved += rotated(end.arm, 2 * half) - end.arm;
   end.mean = (half == 0 ? 1 : std::sin(half) / half) * rotated(end.arm, half);
 }
@@ -122,14 +164,14 @@ void SpringRows::move_end(End& end, double h) const {
 void SpringRows::evaluate_spring(Row& row, double h) {
   for (End& end : row.ends) move_end(end, h);
   const Vector2 after = row.way + row.ends[1].moved - row.ends[0].moved;
-  const double from = row.way.norm(), to = after.norm(), both = from + to;
+  const double from = row.from, to = after.norm(), both = from + to;
   row.force = row.loss = row.stored = row.stiff = row.sideways = 0;
   row.size = both / 2;
   if (!(both > 0)) return;  // no direction to pull along
   const bool ends = row.rule == Rule::End && h > 0 && to > 0;
   if (ends)  // the gradient of what is stored then
     for (End& end : row.ends)
-      if (end.node >= 0) end.mean = rotated(end.arm, h * node(end.node).path.z());
+      if (end.node >= 0 && end.arm != Vector2::Zero()) end.mean = rotated(end.arm, h * node(end.node).path.z());
   const Vector2 along = ends ? Vector2(after / to) : Vector2((row.way + after) / both), across = left_of(along);
   for (int i = 0; i < 2; ++i) {
     End& end = row.ends[i];
@@ -137,34 +179,16 @@ void SpringRows::evaluate_spring(Row& row, double h) {
     end.along << sign * along, sign * cross(end.mean, along);
     end.across << sign * across, sign * cross(end.mean, across);
   }
-  if (h > 0) set_elastic(row, from, to);
+  if (h > 0) set_elastic(row, to);
   row.sideways = std::max(row.force, 0.0) * dt_ / (ends ? to : both);
 }
 
-namespace {
-
-struct Elastic {
-  double force = 0, energy = 0;
-};
-
-/// A spring of that length, without its damper.
-Elastic elastic_of(const SpringDescription& is, bool linear, double length) {
-  if (!linear) {
-    const SpringPull pull = pull_of(is, {length, 0, 0}, Vector3::Zero());
-    return {pull.force, pull.energy};
-  }
-  if (!(length > 0)) return {};  // no direction to pull along
-  const double stretch = length - is.length, force = is.strength * stretch;
-  return {force, 0.5 * force * stretch};
-}
-
-}  // namespace
-
 /// The force for a length that goes from one to another, and the loss in the damper.
-void SpringRows::set_elastic(Row& row, double from, double to) {
+void SpringRows::set_elastic(Row& row, double to) {
   const SpringDescription& is = row.spring->is;
-  const bool bends = is.mode != SpringMode::Both || is.maximum_force > 0;
-  const Elastic first = elastic_of(is, !bends, from), last = elastic_of(is, !bends, to);
+  const double from = row.from;
+  const Elastic& first = row.first;
+  const Elastic last = elastic_of(is, to);
   const auto slack = [&](double length) {
     return (is.mode == SpringMode::ExpandOnly && length > is.length) ||
            (is.mode == SpringMode::ContractOnly && length < is.length);
@@ -172,7 +196,7 @@ void SpringRows::set_elastic(Row& row, double from, double to) {
   if (slack(from) && slack(to)) return;
   constexpr double kSame = 1e-6;  // of the length: the mean of the forces is exact enough
   double elastic = row.rule == Rule::End ? last.force : (first.force + last.force) / 2;
-  if (row.rule == Rule::Mean && bends && std::abs(to - from) > kSame * (from + to))
+  if (row.rule == Rule::Mean && bends(is) && std::abs(to - from) > kSame * (from + to))
     elastic = (last.energy - first.energy) / (to - from);
   row.force = elastic + row.damping * (to - from) / dt_;
   if (is.maximum_force > 0) row.force = std::clamp(row.force, -is.maximum_force, is.maximum_force);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <list>
-#include <vector>
+#include <memory>
 
 #include "runtime/planar/response.hpp"
 
@@ -19,8 +19,10 @@ namespace breve {
 /// bodies that no springs and joints connect.
 class SpringRows {
  public:
-  SpringRows(Planar::Core& core, double dt);
+  explicit SpringRows(Planar::Core& core);
 
+  /// A sub-step of another length, without springs yet. Memory is kept.
+  void begin(double dt);
   void add(FlatSpring& spring);
   void add(FlatJoint& joint);
   /// Adds the forces to those of the bodies and of the ledger, and takes note of the bodies that fly.
@@ -34,7 +36,7 @@ class SpringRows {
     bool flies = false;
     const Response* held = nullptr;                           // by joints, if the assembly flies
     int root = 0;                                             // stands for all that is connected
-    std::size_t at = 0;                                       // among the nodes of its part
+    int at = 0;                                               // among the nodes of its part
     double damped = 0, pace = 0;                              // h c / m and h (c + h k) / m, summed over what acts here
     Vector3 start = Vector3::Zero(), path = Vector3::Zero();  // v, w: m/s, m/s, rad/s
     Vector3 load = Vector3::Zero();                           // N, N, N*m: of all but the rows that are solved
@@ -47,6 +49,9 @@ class SpringRows {
     Vector2 mean = Vector2::Zero();      // the arm at which the force acts
     Vector3 along = Vector3::Zero(), across = Vector3::Zero();  // what w makes of the rate of the stretch, and sideways
   };
+  struct Elastic {
+    double force = 0, energy = 0;
+  };
   struct Row {
     FlatSpring* spring = nullptr;
     FlatJoint* joint = nullptr;
@@ -54,6 +59,8 @@ class SpringRows {
     End ends[2];
     double strength = 0, damping = 0;
     Vector2 way = Vector2::Zero();   // of a spring, at the start
+    double from = 0;                 // its length then
+    Elastic first;                   // and what it pulls, without its damper
     double stretch = 0;              // of a joint, at the start
     double size = 1;                 // m or rad: its length
     double force = 0, loss = 0;      // against the stretch; J, in the damper
@@ -62,14 +69,21 @@ class SpringRows {
   };
   struct Assembly {
     Response response;
-    std::vector<int> nodes;
+    std::pmr::vector<int> nodes;
   };
   struct Part {  // what springs and joints connect
-    std::vector<int> nodes;
-    std::vector<Row*> rows;
-    std::vector<const Assembly*> assemblies;
+    explicit Part(std::pmr::memory_resource* memory) : nodes(memory), rows(memory), assemblies(memory) {}
+    std::pmr::vector<int> nodes;
+    std::pmr::vector<Row*> rows;
+    std::pmr::vector<const Assembly*> assemblies;
   };
-  using Vectors = std::vector<Vector3>;  // by node of a part
+  using Vectors = std::pmr::vector<Vector3>;  // by node of a part
+  /// What a row that depends on the path makes of changes of the path.
+  struct Coupling {
+    int at[2];  // nodes of the part; -1: none
+    double stiff, sideways;
+    Vector3 along[2], across[2];
+  };
 
   int node_of(FlatBody* flat);
   End end_of(BodyIndex body, const Vector3& own, Vector2& point);
@@ -82,11 +96,14 @@ class SpringRows {
   // spring_rows.cpp: what a row pulls along a path
   double mobility(const End& end) const;
   void move_end(End& end, double h) const;
+  void rotate_end(End& end, double h) const;
   void evaluate_spring(Row& row, double h);
   void evaluate_joint(Row& row);
   void evaluate_now(Row& row);
   void evaluate(const Part& part);
-  void set_elastic(Row& row, double from, double to);
+  static bool bends(const SpringDescription& is);
+  static Elastic elastic_of(const SpringDescription& is, double length);
+  void set_elastic(Row& row, double to);
 
   // spring_flight.cpp: which bodies fly, and the rules
   void sum_paces();
@@ -96,18 +113,18 @@ class SpringRows {
   void set_loads();
 
   // spring_paths.cpp: the path on which all agree
-  std::vector<Part> parts();
-  Vectors mobile(const Part& part, const Vectors& loads) const;
-  Vectors pulls(const Part& part) const;
-  Vectors tolerance(const Part& part) const;
-  Vectors residual(const Part& part);
-  Vectors times_inertia(const Part& part, const Vectors& x) const;
-  Vectors multiply(const Part& part, const Vectors& x) const;
-  Vectors diagonal(const Part& part) const;
-  Vectors precondition(const Part& part, const Vectors& diagonal, const Vectors& x) const;
-  Vectors step_against(const Part& part, const Vectors& diagonal, const Vectors& residual);
+  void make_parts();
+  void take_part(const Part& part);
+  void mobile(const Part& part, const Vectors& loads, Vectors& out) const;
+  void add_pulls(const Part& part, double sign, Vectors& out) const;
+  void set_residual(const Part& part);
+  void linearize(const Part& part);
+  void times_inertia(const Vectors& x, Vectors& out) const;
+  void multiply(const Vectors& x, Vectors& out) const;
+  void precondition(const Part& part, const Vectors& x, Vectors& out) const;
+  void find_step(const Part& part);
   double merit(const Part& part) const;
-  double wrong(const Part& part, const Vectors& residual, const Vectors& diagonal) const;
+  double wrong(const Part& part, const Vectors& residual);
   void start_path(const Part& part);
   bool find_path(const Part& part, bool lands);
   void land(const Part& part);
@@ -115,12 +132,20 @@ class SpringRows {
   void give(Row& row);
 
   Planar::Core& core_;
-  double dt_;
+  double dt_ = 0;
   std::pmr::vector<Node> nodes_;
   std::pmr::vector<Row> rows_;
   std::pmr::vector<int> node_of_;  // by slot
-  std::list<Assembly> assemblies_;
-  std::uint64_t looks_ = 0;  // at rows
+  std::pmr::list<Assembly> assemblies_;
+  std::pmr::vector<Part> parts_;
+  std::size_t part_count_ = 0;     // of them are used
+  std::pmr::vector<int> part_of_;  // by node that stands for others
+  std::uint64_t looks_ = 0;        // at rows
+  // The part that is solved, by its nodes and rows.
+  Vectors inertias_;
+  std::pmr::vector<double> shares_;
+  std::pmr::vector<Coupling> couplings_;
+  Vectors residual_, tolerance_, diagonal_, step_, left_, ahead_, way_, pushed_, scratch_;
 };
 
 }  // namespace breve

@@ -119,11 +119,12 @@ void Planar::Core::advance(MechanicsClient& asked, double start, double h, doubl
   make_missed_contacts();
   make_contacts();
   // Springs that scripts connected, changed or stretched meanwhile.
-  ledger.script_work += springs_energy() - springs_known;
+  const double stretched = springs_energy();
+  ledger.script_work += stretched - springs_known;
   int count = sub_steps() << refined;
   if (const double longest = longest_step(); longest > 0)
     count = std::max(count, static_cast<int>(std::min(std::ceil(h / longest - 1e-9), kMostSteps)));
-  const Balance before = balance();
+  const Balance before = balance(stretched);
   pushed = 0;
   const std::size_t impacts_before = impacts.size();
   for (int i = 0; i < count && b2; ++i) {
@@ -268,6 +269,7 @@ void Planar::Core::run(double dt, bool handled) {
 /// Notes the velocities at the start of a sub-step, and takes off half of the acceleration where it is known.
 void Planar::Core::kick(double dt) {
   friction = driven_work = 0;
+  landed_hard = false;
   lightest = std::numeric_limits<double>::infinity();
   heaviest = 0;
   for (FlatJoint& joint : joints)

@@ -121,7 +121,7 @@ bool Planar::Core::watch_energy(const Balance& before, double moment) {
                    kResidualFast = 1;  // as runtime/dynamics; the fast rung is not meant to keep energy
   constexpr double kTiny = 1e-6;       // of what is stored: single precision
   if (settings.guard == GuardMode::Off) return false;
-  const Balance after = balance();
+  const Balance after = balance(springs_known);
   const double in = after.works - before.works, out = after.losses - before.losses;
   const double gain = after.stored - before.stored - in + out - std::max(pushed, 0.0);
   if (watched.steps >= kWindow) watched = {};

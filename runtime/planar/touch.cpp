@@ -64,6 +64,32 @@ bool Planar::Core::ShouldCollide(b2Fixture* a, b2Fixture* b) {
   return true;
 }
 
+/// Whether two bodies come together so fast that sweeps may not stop all that they touch.
+bool Planar::Core::lands_hard(b2Contact& contact) const {
+  const b2Body &x = *contact.GetFixtureA()->GetBody(), &y = *contact.GetFixtureB()->GetBody();
+  const FlatBody &a = of(&x), &b = of(&y);
+  const double size = std::min(a.fixed ? b.thickness : a.thickness, b.fixed ? a.thickness : b.thickness);
+  const double u = settings.unit, pull = settings.gravity.norm();
+  const auto hard = [&](double speed) {
+    constexpr double kDeep = 0.05, kHigh = 0.1;  // of half the narrowest width: in a sub-step, and as after a fall
+    const bool falls = speed * u > pull * step_length && speed * speed * u / 2 > pull * kHigh * size;
+    return falls || speed * step_length > kDeep * size;
+  };
+  const b2Vec2 v = x.GetLinearVelocity() - y.GetLinearVelocity();
+  const double spins =
+      a.reach * std::abs(double{x.GetAngularVelocity()}) + b.reach * std::abs(double{y.GetAngularVelocity()});
+  if (!hard(double{v.Length()} + spins)) return false;
+  b2WorldManifold where;
+  contact.GetWorldManifold(&where);
+  float approach = 0;
+  for (int i = 0; i < contact.GetManifold()->pointCount; ++i) {
+    const b2Vec2 point = where.points[i];
+    const b2Vec2 slip = x.GetLinearVelocityFromWorldPoint(point) - y.GetLinearVelocityFromWorldPoint(point);
+    approach = std::max(approach, b2Dot(slip, where.normal));
+  }
+  return hard(double{approach});
+}
+
 void Planar::Core::BeginContact(b2Contact* contact) {
   for (const b2Fixture* fixture : {contact->GetFixtureA(), contact->GetFixtureB()}) {
     FlatBody& flat = of(const_cast<b2Fixture*>(fixture)->GetBody());
@@ -99,6 +125,7 @@ void Planar::Core::PreSolve(b2Contact* contact, const b2Manifold*) {
   } catch (...) {
     failure = std::current_exception();
   }
+  if (!landed_hard) landed_hard = lands_hard(*contact);
 }
 
 void Planar::Core::rethrow() {
