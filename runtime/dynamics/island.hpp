@@ -51,6 +51,7 @@ class Island : public InMemory {
   island::State state_;
   island::Arrays arrays_;
   island::Balance balance_;
+  island::Credit credit_;
   island::Handlers handlers_;
   island::Contacts contacts_;
   island::ContactSprings springs_;

@@ -12,13 +12,11 @@ void Arrays::write() {
     if (BodyEntry* known = state_.core.find(one.body)) known->step = one.next;
   }
   write_networks();
+  state_.place_links();
   for (const Clustered& one : state_.clusters)
     for (const std::uint32_t index : one.entry->trees) {
       state_.core.trees[index]->step = one.entry->system->next_step();
-      if (state_.placed)
-        state_.core.write_back(*state_.core.trees[index]);
-      else
-        state_.core.place_links(*state_.core.trees[index]);
+      state_.core.write_back(*state_.core.trees[index]);
     }
   book();
 }

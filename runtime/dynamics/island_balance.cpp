@@ -122,6 +122,7 @@ Balance::Stored Balance::measure(bool start) {
     all.springs += energy.springs;
     tree->step_stored = start ? energy.total() : energy.total() - tree->step_stored;
     if (start) tree->step_kinetic = energy.kinetic;
+    if (start && energy.kinetic > tree->fastest && std::isfinite(energy.kinetic)) tree->fastest = energy.kinetic;
     if (!start) tree->booked = energy.total();
   }
   all.springs += network_energy(state_);

@@ -93,15 +93,23 @@ void Books::open() {
 void Books::note_smooth(double free_works) {
   if (sprung_) smooth_stored_ = stored_energy(state_), smooth_works_ = free_works;
   if (!kept_) return;
-  sub_start_.smooth_kinetic = 0;
+  sub_start_.smooth_kinetic = smooth_stored_ = 0;
   for (Clustered& one : state_.clusters) {
     const Energy& did = one.pending;
     double kinetic = 0;
-    one.sub_start.unexplained = stored_energy(state_, one, kinetic) - one.sub_start.stored - did.motor_work -
-                                did.script_work - one.held_work + did.drag_loss;
+    const double stored = stored_energy(state_, one, kinetic);
+    one.sub_start.unexplained =
+        stored - one.sub_start.stored - did.motor_work - did.script_work - one.held_work + did.drag_loss;
+    smooth_stored_ += stored;
     sub_start_.smooth_kinetic += kinetic;
   }
   state_.placed = true;
+}
+
+double Books::taken() {
+  double now = 0, kinetic = 0;
+  for (const Clustered& one : state_.clusters) now += stored_energy(state_, one, kinetic);
+  return smooth_stored_ - now;
 }
 
 bool Books::only_motors() const { return rows_.contacts() == 0 && rows_.limits() == 0; }

@@ -42,6 +42,8 @@ class Books {
   /// After smooth motion, in an island with bodies on springs and without joints; else nothing.
   std::optional<double> smooth_stored() const { return sprung_ ? std::optional(smooth_stored_) : std::nullopt; }
   double kinetic() const { return sub_start_.kinetic; }
+  /// What the rows of the sub-step took from trees so far, with all that was done to positions since.
+  double taken();
   double smooth_kinetic() const { return sub_start_.smooth_kinetic; }
   double predicted() const { return sub_start_.predicted; }
   void set_predicted(double energy) { sub_start_.predicted = energy; }
@@ -58,9 +60,10 @@ class Books {
   ContactSprings& springs_;
   Rows& rows_;
   Momentum& momentum_;
-  SubStepEnergy sub_start_;  // of all
-  double stored_ = 0;        // J, where note_start() was called
-  Energy ledger_;            // likewise
+  SubStepEnergy sub_start_;   // of all
+  double smooth_stored_ = 0;  // J, of clusters, after smooth motion
+  double stored_ = 0;         // J, where note_start() was called
+  Energy ledger_;             // likewise
   bool kept_ = false;
   bool sprung_ = false;  // open() found rows to come for bodies on springs, in an island without joints
   double gained_ = 0, unpaid_ = 0;

@@ -78,6 +78,7 @@ void Guard::step(MechanicsClient* client, double start, double h) {
   }
   if (attempt > 0 || state_.finished || followed.step != asked.step) state_.end_use(asked);
   if (trouble.found) give_in(trouble, undone, start, h);
+  if (!handlers_.dissolved()) credit_.keep();
 }
 
 /// How often a step is refined. What a script moves makes overlaps that no sub-step mends: one try tells.
@@ -185,6 +186,7 @@ Trouble Guard::take(MechanicsClient* client, double start, double h) {
   books_.begin_try();
   residual_ = unexplained_ = allowed_ = 0;
   const double before = balance_.open();
+  credit_.begin_try();
   try {
     step_.once(client, start, h);
   } catch (const Error& error) {

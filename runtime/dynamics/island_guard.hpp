@@ -9,12 +9,13 @@ namespace breve::island {
 
 class Guard {
  public:
-  Guard(State& state, Balance& balance, Books& books, Momentum& momentum, Overlaps& overlaps, Handlers& handlers,
-        Step& step)
+  Guard(State& state, Balance& balance, Books& books, Momentum& momentum, Credit& credit, Overlaps& overlaps,
+        Handlers& handlers, Step& step)
       : state_(state),
         balance_(balance),
         books_(books),
         momentum_(momentum),
+        credit_(credit),
         overlaps_(overlaps),
         handlers_(handlers),
         step_(step),
@@ -41,6 +42,7 @@ class Guard {
   Balance& balance_;
   Books& books_;
   Momentum& momentum_;
+  Credit& credit_;
   Overlaps& overlaps_;
   Handlers& handlers_;
   Step& step_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "runtime/articulated/kinematics.hpp"
 #include "runtime/dynamics/island_energy.hpp"
@@ -16,15 +17,16 @@ namespace {
 // overlap.
 constexpr double kYield = 1e-4;
 
-constexpr double kLift = 0.04;  // 1/s, of their size, that bodies may be lifted for nothing
+constexpr double kLift = 0.04;  // 1/s, of their size, that bodies may be lifted where nothing moves to pay for it
 
 }  // namespace
 
-Positions::Positions(State& state, Contacts& contacts, Rows& rows, Momentum& momentum)
+Positions::Positions(State& state, Contacts& contacts, Rows& rows, Momentum& momentum, Credit& credit)
     : state_(state),
       contacts_(contacts),
       rows_(rows),
       momentum_(momentum),
+      credit_(credit),
       pushes_(state.memory),
       scalar_pushes_(state.memory),
       struck_(state.memory),
@@ -42,6 +44,7 @@ void Positions::push_apart(double h) {
   const double quickest = kFastestPush * state_.unit();
   bool any = false;
   double fastest = 0;
+  see_whether_apart();
   pushes_.clear();
   scalar_pushes_.clear();
   for (const Touch& touch : contacts_.touches()) {
@@ -61,12 +64,12 @@ void Positions::push_apart(double h) {
   }
   scalar_pushes_.resize(rows_.scalars().size(), 0.0);
   if (!any) return;
-  const double before = state_.result.ledger.contact_loss;
+  const Given before = given(), most = payable(h);
   const double stored = state_.networks.empty() ? 0 : network_energy(state_);
   move_by_pushes(fastest, h, Rates::Stay);
   if (!state_.networks.empty()) shorten_winding(network_energy(state_) - stored, h);
-  shorten_pushes(before, h);
-  pay_for_moves(before - state_.result.ledger.contact_loss, true);
+  shorten_pushes(before, most, h);
+  pay_for_moves(-before.all - state_.result.ledger.contact_loss, true);
 }
 
 /// Moves everything for h seconds by the velocities that pushes_ and scalar_pushes_ ask for. The solver solves the rows
@@ -89,15 +92,47 @@ void Positions::move_by_pushes(double fastest, double h, Rates rates) {
   book_moves(1);
 }
 
-/// What pushing trees apart may give in a sub-step of h seconds, J: a little of what moves, which pays for it, and,
-/// where something outside holds them, what lifts them by a little of their size each second, however many sub-steps
-/// that has. What falls freely need not be lifted: its centre of mass goes on as it did. Springs that press bodies into
-/// one another, or beyond limits, are not to be wound up for nothing, nor is a body that spins to be drawn out.
-double Positions::payable(double h) const {
-  if (state_.trees.empty()) return JointDrive::kNoLimit;
+/// Scripts may place links in overlaps, until none is left for the first time. Later overlaps are the solver's.
+void Positions::see_whether_apart() {
+  const auto overlaps = [this](const Touch& touch) {
+    return -touch.gap > kSkin * state_.size_of_pair(contacts_.pair_of(touch));
+  };
+  constexpr double kBeyond = 1e-3;  // rad, or the world's length unit
+  const auto beyond = [](const Bound& bound) { return -bound.gap > kBeyond * bound.unit; };
+  if (std::any_of(contacts_.touches().begin(), contacts_.touches().end(), overlaps) ||
+      std::any_of(contacts_.bounds().begin(), contacts_.bounds().end(), beyond))
+    return;
+  for (Tree* tree : state_.trees) tree->set_apart = false;
+}
+
+/// What pushing trees apart may give in a sub-step of h seconds: a little of what moves, which pays for it, and, where
+/// something outside holds them, what lifts them by a little of their size each second, however many sub-steps that
+/// has, as far as contacts took as much before, or scripts made the overlap. What falls freely need not be lifted: its
+/// centre of mass goes on as it did. Springs that press bodies into one another, or beyond limits, are not to be wound
+/// up for nothing, nor is a body that spins to be drawn out.
+Given Positions::payable(double h) {
+  if (state_.trees.empty()) return {JointDrive::kNoLimit, JointDrive::kNoLimit};
   const bool falls = !momentum_.touched_from_outside() && std::all_of(state_.clusters.begin(), state_.clusters.end(),
                                                                       [](const Clustered& one) { return one.loose; });
-  return payable_by_motion() + (falls ? 0 : kLift * h * weight(state_));
+  const double by_motion = payable_by_motion();
+  if (falls) return {by_motion, by_motion};
+  const bool by_scripts = state_.drivers > 0 || std::any_of(state_.trees.begin(), state_.trees.end(),
+                                                            [](const Tree* tree) { return tree->set_apart; });
+  const double lift = kLift * h * weight(state_);
+  if (by_scripts) return {by_motion + lift, by_motion + lift};
+  return {by_motion + std::min(lift, credit_.left()), by_motion};
+}
+
+/// What contacts gave so far, and what springs have.
+Given Positions::given() const {
+  Given now{-state_.result.ledger.contact_loss, 0};
+  for (Tree* tree : state_.trees) now.springs += state_.core.joint_springs(*tree);
+  for (const Clustered& one : state_.clusters) {
+    if (one.entry->springs.empty()) continue;
+    for (Tree* tree : one.entry->system->trees()) articulated::forward_kinematics(tree->model, tree->data, tree->state);
+    now.springs += spring_energy(state_, one);
+  }
+  return now;
 }
 
 /// Takes back what winds up springs between bodies without joints by more than is payable.
@@ -109,16 +144,20 @@ void Positions::shorten_winding(double wound, double h) {
 
 double Positions::payable_by_motion() const { return kFew * momentum_.moving(Payers::Trees); }
 
-/// Takes back of what move_by_pushes() has just moved what gives more than is payable: energy is not linear in the
+/// Takes back of what move_by_pushes() has just moved what gives more than it may: energy is not linear in the
 /// distance, so that this takes some tries, and the last one takes back all.
-/// @param before  J, that contacts had lost before
-void Positions::shorten_pushes(double before, double h) {
+/// @param before  given() before it moved
+/// @param most    what it may give
+void Positions::shorten_pushes(const Given& before, const Given& most, double h) {
   constexpr int kTries = 4;
   double left = 1;  // of the motion
   for (int i = 1; i <= kTries && left > 0; ++i) {
-    const double given = before - state_.result.ledger.contact_loss, most = payable(h);
-    if (!(given > most)) return;
-    const double kept = i < kTries ? left * most / given : 0;
+    const Given now = given();
+    const double all = now.all - before.all, springs = now.springs - before.springs;
+    double share = all > most.all ? most.all / all : 1;
+    if (springs > most.springs) share = std::min(share, most.springs / springs);
+    if (!(share < 1)) return;
+    const double kept = i < kTries ? left * share : 0;
     take_back_pushes(left - kept, h);
     left = kept;
   }
@@ -148,11 +187,11 @@ void Positions::move_back(double h) {
 void Positions::put_back(double h, bool struck) {
   constexpr int kTries = 2;
   constexpr double kFar = 0.02;  // rad, or the world's length unit: put back so far, links do not move along their rows
-  for (int i = 0; i < kTries && put_back_once(h, struck || i > 0) > kFar; ++i) continue;
+  for (int i = 0; i < kTries && put_back_once(h, struck || i > 0, Rates::Carried) > kFar; ++i) continue;
 }
 
 /// @return  how far a joint was put back, rad or of the world's length unit
-double Positions::put_back_once(double h, bool struck) {
+double Positions::put_back_once(double h, bool struck, Rates rates) {
   scalar_pushes_.clear();
   double fastest = 0, farthest = 0;
   for (std::size_t i = 0; i < rows_.limits(); ++i) {
@@ -180,7 +219,7 @@ double Positions::put_back_once(double h, bool struck) {
   }
   if (!any) return 0;
   scalar_pushes_.resize(rows_.scalars().size(), 0.0);
-  move_by_pushes(fastest, h, Rates::Carried);
+  move_by_pushes(fastest, h, rates);
   return farthest;
 }
 
@@ -302,6 +341,40 @@ bool Positions::hold_off(double h) {
   momentum_.give_positions(0.5 * h, struck_);
   book_moves(1);
   return true;
+}
+
+/// Springs pull at the cluster's links.
+bool Positions::sprung(const Clustered& one) const {
+  const auto pulls = [this](const TreeLink& link) {
+    return link.joint != kNoJoint && state_.core.joints[link.joint].drive.stiffness > 0;
+  };
+  const std::span trees = one.entry->system->trees();
+  return !one.entry->springs.empty() || std::any_of(trees.begin(), trees.end(), [&](const Tree* tree) {
+    return std::any_of(tree->links.begin(), tree->links.end(), pulls);
+  });
+}
+
+/// After the rows moved positions: whether a contact of links that held is deeper than it may be. A constant force does
+/// not hold against a spring that is fast for the sub-step, although the velocities at its ends say that it does.
+bool Positions::sank() {
+  constexpr double kSunk = 0.005;  // of the bodies' size
+  const auto by_spring = [this](const Clustered& one) { return sprung(one); };
+  if (rows_.contacts() == 0 || std::none_of(state_.clusters.begin(), state_.clusters.end(), by_spring)) return false;
+  state_.place_links();
+  for (std::size_t i = 0; i < rows_.contacts(); ++i) {
+    const auto& [touch, pair, row, law] = rows_.contact(i);
+    if (!(row.impulse[0] > 0) || !(row.ja || row.jb)) continue;
+    if (rows_.gap_now(touch) < std::min(touch.gap, 0.0) - kSunk * state_.size_of_pair(pair)) return true;
+  }
+  return false;
+}
+
+/// Puts back what sank, as far as that gives no more than the rows of the sub-step took.
+/// @param most  J, that they took
+void Positions::raise(double h, double most) {
+  const Given before = given();
+  put_back_once(h, true, Rates::Stay);
+  shorten_pushes(before, {most, most}, h);
 }
 
 /// What pushing apart gave or took, as height, in motion or in springs, is booked as what contacts did: with a sign

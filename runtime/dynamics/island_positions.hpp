@@ -2,6 +2,7 @@
 // velocity.
 #pragma once
 
+#include "runtime/dynamics/island_balance.hpp"
 #include "runtime/dynamics/island_momentum.hpp"
 
 namespace breve::island {
@@ -9,12 +10,20 @@ namespace breve::island {
 /// Of joints where positions are moved: they stay, or links keep their momenta where rates would gain by that.
 enum class Rates { Stay, Carried };
 
+/// What moving positions gives, J.
+struct Given {
+  double all = 0;
+  double springs = 0;  // of that, to springs of trees and between trees
+};
+
 class Positions {
  public:
-  Positions(State& state, Contacts& contacts, Rows& rows, Momentum& momentum);
+  Positions(State& state, Contacts& contacts, Rows& rows, Momentum& momentum, Credit& credit);
 
   void push_apart(double h);
   bool hold_off(double h);
+  bool sank();
+  void raise(double h, double most);
   void put_back(double h, bool struck);
 
   // The rows' solution is taken as a velocity that lasts h seconds and then is gone. Between these two the movers have
@@ -30,14 +39,17 @@ class Positions {
   void pay_for_moves(double given, bool by_contacts);
 
  private:
-  double put_back_once(double h, bool struck);
+  double put_back_once(double h, bool struck, Rates rates);
   void move_by_pushes(double fastest, double h, Rates rates);
-  double payable(double h) const;
+  Given payable(double h);
+  Given given() const;
   void shorten_winding(double wound, double h);
-  void shorten_pushes(double before, double h);
+  void shorten_pushes(const Given& before, const Given& most, double h);
+  void see_whether_apart();
   void take_back_pushes(double part, double h);
   bool on_spring(int mover) const;
   bool find_struck(double h);
+  bool sprung(const Clustered& one) const;
   void book_moves(double sign);
   void book_way(double work, Tree* tree);
   double softness(const NearPair& pair) const;
@@ -46,6 +58,7 @@ class Positions {
   Contacts& contacts_;
   Rows& rows_;
   Momentum& momentum_;
+  Credit& credit_;
   std::pmr::vector<contact::Push> pushes_;  // of contact rows
   std::pmr::vector<double> scalar_pushes_;  // of scalar rows: the velocity that puts them right, m/s or rad/s
   std::pmr::vector<std::uint8_t> struck_;   // of movers: contacts changed its velocity

@@ -152,7 +152,9 @@ void SubStep::move_by_rows(double h) {
   state_.store_velocities();
   books_.note_solved();
   solver_.move_by_impulses(0.5 * h, books_.smooth_stored());
-  positions_.put_back(h, positions_.hold_off(h));
+  const bool struck = positions_.hold_off(h);
+  positions_.put_back(h, struck);
+  if (!struck && books_.kept() && positions_.sank()) positions_.raise(h, std::max(0.0, books_.taken()));
 }
 
 /// After the rows of h seconds: contacts and limits of articulated bodies that no row was made for, and that they have

@@ -172,6 +172,9 @@ void Dynamics::Core::save_tree(ByteWriter& out, const Tree& tree) const {
   out.put(tree.unheld);
   out.put(tree.booked);
   out.put(tree.owed);
+  out.put(tree.fastest);
+  out.put(tree.credit);
+  out.put(tree.set_apart);
   out.put(tree.changed);
   each(Writer{out}, tree.ledger);
   put_numbers(out, tree.state.q);
@@ -263,6 +266,9 @@ void Dynamics::Core::load_tree(ByteReader& in, Tree& tree) {
   tree.unheld = std::clamp(in.get<int>(), 0, kMostUnheld);
   tree.booked = in.get<double>();
   tree.owed = std::max(0.0, in.get<double>());
+  tree.fastest = std::max(0.0, in.get<double>());
+  tree.credit = std::max(0.0, in.get<double>());
+  tree.set_apart = in.get_bool();
   tree.changed = in.get_bool();
   each(Reader{in}, tree.ledger);
   for (double& x : tree.state.q) x = in.get<double>();
@@ -301,6 +307,9 @@ void Dynamics::Core::hash(Hasher& hasher) const {
     add(tree.step);
     add(tree.unheld);
     add(tree.owed);
+    add(tree.fastest);
+    add(tree.credit);
+    add(tree.set_apart);
     for (const double x : tree.state.q) add(x);
     for (const double x : tree.state.v) add(x);
     for (const double x : tree.mean) add(x);

@@ -124,7 +124,10 @@ struct Tree : InMemory {
   double step_kinetic = 0;                   // J, likewise
   double booked = std::numeric_limits<double>::quiet_NaN();  // J, that it has by the books
   bool changed = true;                                       // by scripts since
-  double owed = 0;  // J, that contacts and limits of its island gave and no motion of links has repaid yet
+  double owed = 0;        // J, that contacts and limits of its island gave and no motion of links has repaid yet
+  double fastest = 0;     // J, the largest energy of motion with which a step began
+  double credit = 0;      // J, that contacts took and may give back by lifting links out of overlaps
+  bool set_apart = true;  // scripts have placed links since nothing overlapped: the overlaps are theirs
 
   BodyIndex first_body() const {  // of the lowest index
     BodyIndex first = kNoBody;

@@ -404,7 +404,7 @@ void Dynamics::Core::project_velocities(Tree& tree) {
 void Dynamics::Core::place_links(Tree& tree) {
   articulated::forward_kinematics(tree.model, tree.data, tree.state);
   write_back(tree);
-  tree.changed = true;
+  tree.changed = tree.set_apart = true;
 }
 
 void Dynamics::Core::write_back(Tree& tree) {

@@ -73,11 +73,14 @@ State measure(Creature& creature) {
                                 vector(world.rotational_velocity(body.object).or_throw())});
     const Vector3 own = m.pose.orientation.conjugate() * m.spin;
     now.kinetic += 0.5 * body.mass * m.velocity.squaredNorm() + 0.5 * own.dot(body.inertia.cwiseProduct(own));
-    now.potential -= body.mass * creature.gravity().dot(m.pose.at);
+    const double height = -body.mass * creature.gravity().dot(m.pose.at);
+    now.potential += height;
+    now.terms += std::abs(height);
     now.mass += body.mass;
     now.momentum += body.mass * m.velocity;
     now.center += body.mass * m.pose.at;
   }
+  now.links = static_cast<int>(bodies.size());
   now.center /= now.mass;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Moving& m = all[i];
@@ -98,6 +101,7 @@ State measure(Creature& creature) {
     const double length = (creature.pose(spring.a).at - creature.pose(spring.b).at).norm();
     now.springs += 0.5 * spring.strength * (length - spring.length) * (length - spring.length);
   }
+  now.terms += now.kinetic + now.springs;
   return now;
 }
 

@@ -1,6 +1,8 @@
 // Energy and momentum of a creature from its poses and velocities, by the searcher's own masses, inertias and springs.
 #pragma once
 
+#include <limits>
+
 #include "creature.hpp"
 
 namespace adversary {
@@ -11,11 +13,15 @@ struct State {
   Vector3 spin = Vector3::Zero();                  // angular momentum about the centre of mass, N m s
   Vector3 center = Vector3::Zero();                // of mass, m
   double mass = 0;                                 // kg
-  double roundness = 0;                            // kg m2: bound of the moment of inertia about the centre of mass
-  double size = 0;                                 // m: farthest body from the centre of mass
-  double told = 0;  // rad or m: how far the positions that joints tell are from the poses
+  int links = 0;
+  double roundness = 0;  // kg m2: bound of the moment of inertia about the centre of mass
+  double size = 0;       // m: farthest body from the centre of mass
+  double told = 0;       // rad or m: how far the positions that joints tell are from the poses
+  double terms = 0;      // J, sum of the magnitudes of all terms of total()
 
   double total() const { return kinetic + potential + springs; }
+  /// J, by which total() may be wrong: the place of each link has the round-off of all links before it in the chain.
+  double round_off() const { return std::numeric_limits<double>::epsilon() * links * terms; }
   bool finite() const;
 };
 

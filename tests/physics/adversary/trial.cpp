@@ -23,8 +23,9 @@ class Books {
     for (const Joint& joint : creature.joints()) last_.push_back(positions_of(creature, joint));
     for (const Joint& joint : creature.joints()) rates_.push_back(rates(joint));
     lowest_ = start_.total();
-    books_ = std::abs(start_.kinetic - ledger_.kinetic) + std::abs(start_.springs - ledger_.springs) +
-             std::abs(start_.potential - ledger_.potential);
+    const double differ = std::abs(start_.kinetic - ledger_.kinetic) + std::abs(start_.springs - ledger_.springs) +
+                          std::abs(start_.potential - ledger_.potential);
+    books_ = std::max(0.0, differ - start_.round_off());
     look_at_scales();
   }
 
@@ -41,7 +42,9 @@ class Books {
     lowest_ = std::min(lowest_, balance);
     rise_ = std::max(rise_, balance - lowest_);
     gained_ = std::max(gained_, balance - start_.total());
-    books_ = std::max(books_, std::abs(own_residual() - (ledger_.residual - ledger0_.residual)));
+    const double differ = std::abs(own_residual() - (ledger_.residual - ledger0_.residual));
+    // A creature that cannot move has a scale of nearly nothing, and the heights that it keeps have round-off.
+    books_ = std::max(books_, differ - std::max(start_.round_off(), now_.round_off()));
     motors_ = std::max(motors_, motor() - most_motor_);
     work_gap_ = std::max(work_gap_, std::abs(ledger_.script_work - ledger0_.script_work - forces_));
     // Only their sum: rows that are solved together may pass energy from one account to another, and from a motor.

@@ -14,7 +14,7 @@ enum Measure {
   kMomentum,  // drift of momentum, without gravity
   kSpin,      // drift of angular momentum about the centre of mass, without gravity
   kCenter,    // the centre of mass leaves its straight line, without gravity
-  kBooks,     // the ledger's residual against the searcher's own balance
+  kBooks,     // the ledger's residual against the searcher's own balance, beyond round-off of what is stored
   kLosses,    // the losses together fall, where nothing drives
   kMotors,    // the ledger books more work of motors than strength times way
   kForces,    // the ledger books another work of the host's forces than force times way
