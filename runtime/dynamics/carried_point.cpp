@@ -127,10 +127,18 @@ Meeting carried_between(const Rolling& a, const Rolling& b, const Vector3& norma
   if (!(least > 0)) return {middle, normal};
   on_a.diagonal().array() += least;
   on_b.diagonal().array() += least;
-  const Vector2 x = plane.transpose() * apart, on = (on_a + on_b).inverse() * (on_b * x);
+  const Vector2 x = plane.transpose() * apart;
+  // Edges that are nearly parallel cross anywhere: their point stays between where the two bodies took it.
+  Vector2 on = (on_a + on_b).inverse() * (on_b * x);
+  const double off = (on - 0.5 * x).norm(), most = 0.5 * x.norm();
+  if (off > most) on = 0.5 * x + most / off * (on - 0.5 * x);
   const Vector3 point = middle + plane * (on - 0.5 * x);
   if (!is_round(a.shape) || !is_round(b.shape)) return {point, normal};
-  return {point, (normal - plane * (on_a * on)).normalized()};
+  // Rims that meet cross, and have the normal of both.
+  constexpr double kRound = 1 + 1e-6;
+  const Vector2 tilt = on_a * on;
+  const bool rims = tilt.norm() * std::min(a.shape.radius(), b.shape.radius()) > kRound * x.norm();
+  return {point, rims ? normal : Vector3((normal - plane * tilt).normalized())};
 }
 
 }  // namespace breve::island

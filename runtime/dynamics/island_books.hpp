@@ -61,7 +61,7 @@ class Books {
   Rows& rows_;
   Momentum& momentum_;
   SubStepEnergy sub_start_;   // of all
-  double smooth_stored_ = 0;  // J, of clusters, after smooth motion
+  double smooth_stored_ = 0;  // J, of clusters, or of all if springs connect bodies without joints, after smooth motion
   double stored_ = 0;         // J, where note_start() was called
   Energy ledger_;             // likewise
   bool kept_ = false;
@@ -69,7 +69,7 @@ class Books {
   double gained_ = 0, unpaid_ = 0;
   // Of bodies on springs in this step, J: what contacts gave, and what smooth motion erred by, less what motion paid.
   double lent_ = 0, erred_ = 0;
-  double smooth_stored_ = 0, smooth_works_ = 0;  // J, of these after smooth motion, and its works less its losses
+  double smooth_works_ = 0;  // J, of smooth motion, less its losses
 };
 
 }  // namespace breve::island
