@@ -180,6 +180,7 @@ void Cluster::acceleration(double t, const Vector& q, const Vector& v, double st
   if (forces_) {
     powers.script += forces_->script_power();
     powers.drag += forces_->drag_power();
+    powers.reaction += forces_->reaction_power();
   }
   a.segment<kWorks>(nv_) << powers.motor / mass_, powers.script / mass_, powers.drag / mass_, powers.reaction / mass_;
   for (std::size_t i = 0; i < motors_.size(); ++i)

@@ -34,9 +34,10 @@ class StageForces {
   /// and v of the cluster. Else nothing.
   /// @return  whether it did
   virtual bool accelerate(const articulated::Vector& q, const articulated::Vector& v, articulated::Vector& a) = 0;
-  /// Power of scripts' forces and of dampers among these, W; after add() or accelerate().
+  /// Power of scripts' forces, of dampers and of predicted contacts among these, W; after add() or accelerate().
   virtual double script_power() const = 0;
   virtual double drag_power() const = 0;
+  virtual double reaction_power() const = 0;
 };
 
 class Cluster final : public articulated::System, public InMemory {

@@ -88,6 +88,44 @@ double energy_of_stillness(const State& state) {
 
 namespace {
 
+/// @param take  called with each link that scripts push, its tree and its number; links are placed
+template <class Take>
+void for_each_pushed(Clustered& one, const Take& take) {
+  const auto pushed = [](const TreeLink& link) {
+    return link.force != Vector3::Zero() || link.torque != Vector3::Zero() || link.asked != Vector3::Zero();
+  };
+  for (Tree* tree : one.entry->system->trees()) {
+    if (std::none_of(tree->links.begin(), tree->links.end(), pushed)) continue;
+    articulated::forward_kinematics(tree->model, tree->data, tree->state);
+    for (std::size_t i = 0; i < tree->links.size(); ++i)
+      if (pushed(tree->links[i])) take(tree->links[i], *tree, static_cast<int>(i));
+  }
+}
+
+}  // namespace
+
+void note_pushed(Clustered& one) {
+  for_each_pushed(one, [](TreeLink& link, const Tree& tree, int i) {
+    link.pushed_center = articulated::com_position(tree.model, tree.data, i);
+    link.pushed_orientation = Quaternion(Eigen::Matrix3d(tree.data.of(i).rotation));
+  });
+}
+
+double work_on_pushed(Clustered& one) {
+  double sum = 0;
+  for_each_pushed(one, [&sum](TreeLink& link, const Tree& tree, int i) {
+    const Vector3 way = articulated::com_position(tree.model, tree.data, i) - link.pushed_center;
+    sum += (link.force + link.asked).dot(way);
+    if (link.torque == Vector3::Zero()) return;
+    const Eigen::AngleAxisd turn(Quaternion(Eigen::Matrix3d(tree.data.of(i).rotation)) *
+                                 link.pushed_orientation.conjugate());
+    sum += turn.angle() * link.torque.dot(turn.axis());
+  });
+  return sum;
+}
+
+namespace {
+
 /// Springs of networks, whose bodies stand where the arrays have them.
 double held_network_energy(const State& state) {
   double sum = 0;

@@ -26,6 +26,10 @@ double energy_of_stillness(const State& state);
 /// The state in the world's arrays, while a handler may change it.
 double held_energy(const State& state);
 
+/// Notes where the links stand that scripts push, and what their forces have worked since, of one cluster.
+void note_pushed(Clustered& one);
+double work_on_pushed(Clustered& one);
+
 /// The part of a way along which a tree may be moved without changing its velocities: all of it, unless its motion
 /// would gain more than a little by standing elsewhere, as that of light links that an impulse throws does.
 double share_without_gain(Tree& tree, const articulated::Vector& way);

@@ -74,7 +74,7 @@ void Guard::step(MechanicsClient* client, double start, double h) {
   const bool undone = ((unpaid && !state_.worn()) || coarse_gain) && !state_.calls_out();
   if (refines && !handlers_.dissolved()) {
     books_.take_back_rest(trouble.found && goes_back(trouble, undone));
-    if (!trouble.found) undo_rise(asked.rung);
+    if (!trouble.found) undo_rise(asked.rung, start);
   }
   if (attempt > 0 || state_.finished || followed.step != asked.step) state_.end_use(asked);
   if (trouble.found) give_in(trouble, undone, start, h);
@@ -100,15 +100,18 @@ bool Guard::unpayable(double owed) const {
 /// Contacts have an error that may have the same sign in each step, as of a body that rotates on its edge. A rise of
 /// energy of articulated bodies that is too small to try the step again is taken back from what moves: on `fast` any,
 /// on the other rungs that of bodies which something outside touches. So is, on `fast` and `balanced`, one that no
-/// finer sub-steps mended.
-void Guard::undo_rise(Rung rung) {
+/// finer sub-steps mended. Where that is all motion, the island was put to rest, which the guard reports.
+void Guard::undo_rise(Rung rung, double start) {
   if (state_.trees.empty()) return undo_rise_of_free_bodies(rung);
   const double all = momentum_.moving(Payers::All), risen = balance_.risen();
   const bool drifts = rung == Rung::Fast || momentum_.touched_from_outside();
   const bool little = drifts && risen > kStill * weight(state_) && risen <= kFew * all;
   const bool coarse = rung == Rung::Fast || rung == Rung::Balanced;
   const bool unmended = coarse && tried_finer_ && risen > allowed_ && all > 0;
-  if (little || unmended) momentum_.undo_gain(std::min(1.0, risen / all), true, Payers::All);
+  if (!little && !unmended) return;
+  momentum_.undo_gain(std::min(1.0, risen / all), true, Payers::All);
+  if (risen >= all && all > energy_of_stillness(state_))
+    state_.intervene({true, GuardReason::Residual, risen, state_.any_body()}, GuardAction::Rested, start);
 }
 
 /// The same on `fast` and `balanced` for bodies without joints, which may rotate far in a sub-step while they touch.

@@ -31,7 +31,7 @@ class Guard {
   int finest(const Trouble& trouble) const;
   bool astray() const;
   bool unpayable(double owed) const;
-  void undo_rise(Rung rung);
+  void undo_rise(Rung rung, double start);
   void undo_rise_of_free_bodies(Rung rung);
   bool goes_back(const Trouble& trouble, bool undone) const;
   void give_in(const Trouble& trouble, bool undone, double start, double h);

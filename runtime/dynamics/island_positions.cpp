@@ -233,6 +233,7 @@ void Positions::begin_moves() {
 }
 
 void Positions::end_moves(double h, Rates rates) {
+  for (Clustered& one : state_.clusters) note_pushed(one);
   for (Free& one : state_.free_bodies) {
     std::copy_n(one.v, 6, one.push);
     one.load_velocity();  // books are made by it
@@ -253,6 +254,7 @@ void Positions::end_moves(double h, Rates rates) {
     if (tree->driven) book_way(tree->set_tau.dot(tree->way), tree);
   }
   momentum_.give_pushes(h, pushes_);
+  book_pushed();
 }
 
 /// Whether a mover is a body without joints that springs pull at.
@@ -307,6 +309,7 @@ bool Positions::find_struck(double h) {
 bool Positions::hold_off(double h) {
   if (!find_struck(h)) return false;
   book_moves(-1);
+  for (Clustered& one : state_.clusters) note_pushed(one);
   momentum_.note(&Tree::smooth_v, true);
   // Semi-implicit Euler has moved them with the velocity after, but for the rows' part.
   const bool semi = semi_implicit(state_.accuracy);
@@ -339,6 +342,7 @@ bool Positions::hold_off(double h) {
       if (tree->driven) book_way(tree->set_tau.dot(tree->way), tree);
     }
   momentum_.give_positions(0.5 * h, struck_);
+  book_pushed();
   book_moves(1);
   return true;
 }
@@ -406,6 +410,12 @@ void Positions::pay_for_moves(double given, bool by_contacts) {
     momentum_.take_from_all(part, Payers::Trees);
   else
     momentum_.undo_gain(part, false, Payers::Trees);
+}
+
+/// The same for links that scripts push, since note_pushed().
+void Positions::book_pushed() {
+  for (Clustered& one : state_.clusters)
+    book_way(work_on_pushed(one), one.alone() ? one.entry->system->trees().front() : nullptr);
 }
 
 /// Scripts' forces work, J, where contacts and limits move positions: these provide it.

@@ -51,6 +51,7 @@ class Positions {
   bool find_struck(double h);
   bool sprung(const Clustered& one) const;
   void book_moves(double sign);
+  void book_pushed();
   void book_way(double work, Tree* tree);
   double softness(const NearPair& pair) const;
 

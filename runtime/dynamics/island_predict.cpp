@@ -27,6 +27,38 @@ void add(Tree& tree, const Row& j, double force) {
   loads.reaction += force * j;
 }
 
+/// Contacts act on its links inside the stages no more.
+void release(Tree& tree) {
+  tree.braced = false;
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    TreeLink& link = tree.links[i];
+    link.predicted = {};
+    tree.loads.wrenches[i] = {link.torque, link.force};
+  }
+}
+
+/// A force on a link of a tree that something outside holds acts by the arms that the link's joints have at each stage.
+/// As a constant force of the joints it would not go on balancing gravity or a script's force on the same link once
+/// light links between it and the world rotate.
+void brace(Tree& tree, int link, const Vector3& force, const Vector3& point) {
+  articulated::Wrench& wrench = tree.links[static_cast<std::size_t>(link)].predicted;
+  wrench.force += force;
+  wrench.couple += (point - articulated::com_position(tree.model, tree.data, link)).cross(force);
+  tree.braced = true;
+}
+
+/// Adds to `j` (nv) what these wrenches are at the joints, where the links are placed.
+void add_braces(const Tree& tree, articulated::Vector& j) {
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    const articulated::Wrench& wrench = tree.links[i].predicted;
+    const int link = static_cast<int>(i);
+    if (wrench.force == Vector3::Zero() && wrench.couple == Vector3::Zero()) continue;
+    const Vector3 center = articulated::com_position(tree.model, tree.data, link);
+    add_point_row(tree, link, center, wrench.force, false, 1, j.data());
+    add_point_row(tree, link, center, wrench.couple, true, 1, j.data());
+  }
+}
+
 }  // namespace
 
 void Prediction::make(double h) {
@@ -45,6 +77,7 @@ void Prediction::make(double h) {
 void Prediction::clear() {
   for (Tree* tree : state_.trees) {
     tree->loads.reacts = false;
+    if (tree->braced) release(*tree);
     tree->outer_force.setZero();
     tree->outer_couple.setZero();
   }
@@ -116,6 +149,10 @@ void Prediction::add_contact(const Touch& touch) {
   for (const auto& [side, sign] : {std::pair(&a, 1.0), std::pair(&b, -1.0)}) {
     if (!side->tree || side->mover < 0) continue;
     Tree& tree = *side->tree;
+    if (!tree.loose) {
+      brace(tree, side->link, sign * force, touch.point);
+      continue;
+    }
     tree.work_v.setZero();
     add_point_row(tree, side->link, touch.point, force, false, sign, tree.work_v.data());
     add(tree, tree.work_v, 1);
@@ -149,9 +186,12 @@ bool Prediction::misled(double h) {
   constexpr double kUnbalanced = 0.25;  // of the energy that the prediction gives by itself
   double alone = 0;
   for (Tree* tree : state_.trees) {
-    if (!tree->loads.reacts) continue;
-    articulated::apply_inverse_mass(tree->model, tree->data, tree->loads.reaction, tree->reacted);
-    alone += 0.5 * h * h * tree->loads.reaction.dot(tree->reacted);
+    if (!tree->loads.reacts && !tree->braced) continue;
+    tree->work_w.setZero(tree->model.velocities());
+    if (tree->loads.reacts) tree->work_w = tree->loads.reaction;
+    if (tree->braced) add_braces(*tree, tree->work_w);
+    articulated::apply_inverse_mass(tree->model, tree->data, tree->work_w, tree->reacted);
+    alone += 0.5 * h * h * tree->work_w.dot(tree->reacted);
   }
   books_.set_predicted(alone);
   if (!books_.kept()) return false;

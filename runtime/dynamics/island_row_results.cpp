@@ -126,7 +126,8 @@ bool Rows::turns_back(std::size_t contact, double h) {
   const auto& [touch, pair, row, law] = this->contact(contact);
   if (touch.gap <= kTouchSkin * state_.size_of_pair(pair)) return false;
   for (const int mover : {row.a, row.b})
-    if (const Tree* tree = mover < 0 ? nullptr : state_.tree_of(mover); tree && tree->loads.reacts) return false;
+    if (const Tree* tree = mover < 0 ? nullptr : state_.tree_of(mover); tree && (tree->loads.reacts || tree->braced))
+      return false;
   if (!unsteady(contact, h)) return false;
   const double start = before(contact, true)[0] - before(contact, false)[0];
   const double end = rate_of(row, true)[0] - rate_of(row, false)[0];

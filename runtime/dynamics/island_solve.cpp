@@ -28,7 +28,7 @@ void Solver::begin(double h) {
   // It acted along the rows as they lay when the sub-step began: what is taken away is what it gave, so that nothing is
   // left that no row pushes along.
   for (Tree* tree : state_.trees) {
-    if (tree->loads.reacts) tree->free_v -= h * tree->reacted;
+    if (tree->loads.reacts || tree->braced) tree->free_v -= h * tree->reacted;
   }
   rows_.set_length(h);
   double given = 0;

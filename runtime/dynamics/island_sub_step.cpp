@@ -147,11 +147,13 @@ void SubStep::solve_as_learned(double time, double h) {
 /// What the rows gave in h seconds moves the island. A force that is constant over the step moves by half of what its
 /// change of velocity would.
 void SubStep::move_by_rows(double h) {
+  for (Clustered& one : state_.clusters) note_pushed(one);
   solver_.limit_moves(0.5 * h);
   smooth_.correct_works(h);
   state_.store_velocities();
   books_.note_solved();
   solver_.move_by_impulses(0.5 * h, books_.smooth_stored());
+  for (Clustered& one : state_.clusters) one.pending.script_work += work_on_pushed(one);
   const bool struck = positions_.hold_off(h);
   positions_.put_back(h, struck);
   if (!struck && books_.kept() && positions_.sank()) positions_.raise(h, std::max(0.0, books_.taken()));

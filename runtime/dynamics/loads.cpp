@@ -26,6 +26,14 @@ bool follows(double sum) {
   return sum < kStable;
 }
 
+/// What scripts set; nothing else pushes the link yet.
+void read_forces(const Bodies& bodies, TreeLink& link) {
+  link.force = bodies.force(link.body);
+  link.torque = bodies.torque(link.body);
+  link.asked.setZero();
+  link.predicted = {};
+}
+
 }  // namespace
 
 bool Dynamics::Core::has_limits(const JointEntry& joint) { return breve::has_limits(joint.drive, joint.is.kind); }
@@ -55,7 +63,7 @@ void Dynamics::Core::set_loads(Tree& tree, const Accuracy& accuracy, double h) {
   tree.set_tau.setZero(tree.model.velocities());
   loads.motor_speed.setZero(tree.model.velocities());
   loads.motor_time = std::max(kMotorTime, h);
-  loads.reacts = false;
+  loads.reacts = tree.braced = false;
   tree.driven = tree.aimed = tree.pushed = false;
   double fastest = 0;
   for (const TreeLink& link : tree.links) {
@@ -67,8 +75,7 @@ void Dynamics::Core::set_loads(Tree& tree, const Accuracy& accuracy, double h) {
   bool drives = false;
   for (std::size_t i = 0; i < size; ++i) {
     TreeLink& link = tree.links[i];
-    link.force = bodies->force(link.body);
-    link.torque = bodies->torque(link.body);
+    read_forces(*bodies, link);
     loads.wrenches[i] = {link.torque, link.force};
     tree.pushed = tree.pushed || link.force != Vector3::Zero() || link.torque != Vector3::Zero();
     articulated::Drive& made = loads.drives[i] = {};
@@ -140,10 +147,11 @@ Stage::Stage(Dynamics::Core& core, const ClusterEntry& cluster, MechanicsClient*
     aims_ = aims_ || tree.aimed;
     pushed_ = pushed_ || tree.pushed;
     loops_ = loops_ || !tree.loops.empty();
+    held_ = held_ || !tree.loose;
     for (const TreeLink& link : tree.links) asked_ = asked_ || core.find(link.body)->force_method;
   }
   asked_ = asked_ && client != nullptr;
-  needed_ = aims_ || pushed_ || asked_ || loops_ || !cluster.springs.empty();
+  needed_ = aims_ || pushed_ || asked_ || loops_ || held_ || !cluster.springs.empty();
   if (cluster.network) cluster.network->begin(core);
 }
 
@@ -151,6 +159,12 @@ void Stage::aim() {
   if (!aims_) return;
   for (const std::uint32_t index : cluster_.trees)
     if (core_.trees[index]->aimed) core_.aim(*core_.trees[index]);
+}
+
+bool Stage::adds() const {
+  if (pressed || pushed_ || asked_ || !cluster_.springs.empty()) return true;
+  return held_ && std::any_of(cluster_.trees.begin(), cluster_.trees.end(),
+                              [this](std::uint32_t index) { return core_.trees[index]->braced; });
 }
 
 bool Stage::accelerate(const articulated::Vector& q, const articulated::Vector& v, articulated::Vector& a) {
@@ -162,18 +176,24 @@ bool Stage::accelerate(const articulated::Vector& q, const articulated::Vector& 
 }
 
 void Stage::add(double time) {
-  script_ = drag_ = 0;
+  script_ = drag_ = reaction_ = 0;
   if (!adds()) return;
   for (const std::uint32_t index : cluster_.trees) {
     Tree& tree = *core_.trees[index];
     for (int i = 0; i < tree.model.size(); ++i) {
-      const TreeLink& link = tree.links[static_cast<std::size_t>(i)];
+      TreeLink& link = tree.links[static_cast<std::size_t>(i)];
       articulated::Wrench& wrench = tree.loads.wrenches[static_cast<std::size_t>(i)];
       wrench = {link.torque, link.force};
-      if (asked_ && core_.find(link.body)->force_method) wrench.force += asked(tree, i, time);
+      if (asked_ && core_.find(link.body)->force_method) wrench.force += link.asked = asked(tree, i, time);
       if (wrench.force != Vector3::Zero() || wrench.couple != Vector3::Zero())
         script_ += wrench.force.dot(articulated::com_velocity(tree.model, tree.data, i)) +
                    wrench.couple.dot(articulated::spin(tree.data, i));
+      if (tree.braced) {
+        reaction_ += link.predicted.force.dot(articulated::com_velocity(tree.model, tree.data, i)) +
+                     link.predicted.couple.dot(articulated::spin(tree.data, i));
+        wrench.force += link.predicted.force;
+        wrench.couple += link.predicted.couple;
+      }
       if (!pressed) continue;
       wrench.force += link.pressed.force;
       wrench.couple += link.pressed.couple;

@@ -15,7 +15,7 @@ class Stage final : public StageForces {
   bool needed() const { return needed_; }
 
   void aim() override;
-  bool adds() const override { return pressed || pushed_ || asked_ || !cluster_.springs.empty(); }
+  bool adds() const override;
   void add(double time) override;
   bool accelerate(const articulated::Vector& q, const articulated::Vector& v, articulated::Vector& a) override;
   std::uint64_t constrain(Tree& tree, double* acceleration) override {
@@ -26,6 +26,7 @@ class Stage final : public StageForces {
   bool pressed = false;      // contact springs act on its links
   double script_power() const override { return script_; }
   double drag_power() const override { return drag_; }
+  double reaction_power() const override { return reaction_; }
 
  private:
   struct End {
@@ -40,8 +41,8 @@ class Stage final : public StageForces {
   Dynamics::Core& core_;
   const ClusterEntry& cluster_;
   MechanicsClient* client_;
-  bool aims_ = false, pushed_ = false, asked_ = false, loops_ = false, needed_ = false;
-  double script_ = 0, drag_ = 0;
+  bool aims_ = false, pushed_ = false, asked_ = false, loops_ = false, held_ = false, needed_ = false;
+  double script_ = 0, drag_ = 0, reaction_ = 0;
 };
 
 }  // namespace breve

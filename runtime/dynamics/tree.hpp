@@ -26,7 +26,11 @@ struct TreeLink {
   MassProperties solid;                                       // that the model was made of
   std::uint32_t switches = 0;                                 // of its body's physics, as the model was made
   Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // set by scripts, as the step began
+  Vector3 asked = Vector3::Zero();                            // by its force method, at the last stage
+  Vector3 pushed_center = Vector3::Zero();                    // its centre of mass and its orientation, from which
+  Quaternion pushed_orientation = Quaternion::Identity();     // on scripts' forces work along what rows move
   articulated::Wrench contact;                                // of contacts in the last sub-step, about its centre
+  articulated::Wrench predicted;                              // likewise, of contacts that are taken to go on
   articulated::Wrench pressed;                                // likewise, of contact springs at this stage
   bool slow_spring = false;                                   // its joint's spring is slower than the step
   double slow_damping = 0;                                    // of that, if it is
@@ -106,6 +110,7 @@ struct Tree : InMemory {
   articulated::State step_state, sub_state;  // as the step, the sub-step began
   articulated::State part_state;             // likewise, at the start of smooth motion
   articulated::Vector reacted;               // (nv) what Loads::reaction gives in a second
+  bool braced = false;                       // contacts act on its links inside the stages, as wrenches
   articulated::Vector free_v, way, kick;     // v without the rows' impulses; the way they make
   double row_share = 1;                      // of that way: the part that is gone
   bool carried = false;                      // links keep their momenta along it
