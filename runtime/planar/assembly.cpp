@@ -3,8 +3,8 @@
 // converged, links are lifted for nothing. So the sub-step of an assembly that touches nothing is solved again, as
 // RATTLE does (Andersen 1983): impulses of the joints at the old pose, such that all joints hold at the new one, then
 // impulses at the new pose such that the velocities are allowed there. Gravity acts in halves before and after. Momenta
-// are kept exactly, and the energy errs by the square of the sub-step without drift. Which motors and limits hold is
-// what Box2D has found.
+// are kept exactly, and the energy errs by the square of the sub-step without drift. Which motors and limits hold
+// is at first what Box2D has found.
 #include "runtime/planar/assembly.hpp"
 
 #include <algorithm>
@@ -121,7 +121,11 @@ void Planar::Core::Assembly::load(double dt) {
     links_[i].eccentric = false;
   }
   for (std::size_t i = 0; i < joints_.size(); ++i) load_joint(i, dt);
-  for (std::size_t i = 0; i < joints_.size(); ++i) aim(i, dt);
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    joints_[i].travel = travel_of(i, before_);
+    aim(joints_[i], dt);
+    take_spring(i);
+  }
 }
 
 FlatPose Planar::Core::Assembly::pose_before(const FlatBody& flat) {
@@ -166,7 +170,7 @@ std::pair<FlatPose, FlatPose> Planar::Core::Assembly::ends_of(std::size_t index,
           ends.child < 0 ? joints_[index].child : poses[static_cast<std::size_t>(ends.child)]};
 }
 
-/// By how much a joint is open: length units, and rad where it holds rotation.
+/// By how much a joint is open, and how far a locked one is along its own axis: length units or rad.
 Planar::Core::Assembly::Vector Planar::Core::Assembly::gap_of(std::size_t index,
                                                               std::span<const FlatPose> poses) const {
   const Member& member = joints_[index];
@@ -174,8 +178,11 @@ Planar::Core::Assembly::Vector Planar::Core::Assembly::gap_of(std::size_t index,
   const Vector2 way = child.point(member.child_point) - parent.point(member.parent_point);
   const double rotation = child.angle - parent.angle - member.reference;
   switch (member.kind) {
-    case JointKind::Revolute: return {way.x(), way.y(), 0};
-    case JointKind::Prismatic: return {way.dot(left_of(parent.rotated(member.axis))), 0, rotation};
+    case JointKind::Revolute: return {way.x(), way.y(), member.locked ? rotation : 0};
+    case JointKind::Prismatic: {
+      const Vector2 axis = parent.rotated(member.axis);
+      return {way.dot(left_of(axis)), member.locked ? way.dot(axis) : 0, rotation};
+    }
     default: return {way.x(), way.y(), rotation};
   }
 }
@@ -219,14 +226,8 @@ void Planar::Core::Assembly::add_loads(double h, double part) {
     velocities_[i] += early(links_[i]) * h * forces_[i];
     velocities_[i].head<2>() += fall;
   }
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    if (joints_[i].load == 0) continue;
-    const auto [of_parent, of_child] = axis_rows(i, before_);
-    const JointSystem::Ends& ends = system_.ends(i);
-    for (const auto& [end, row] : {std::pair{ends.parent, &of_parent}, {ends.child, &of_child}})
-      if (const auto link = static_cast<std::size_t>(end); end >= 0)
-        velocities_[link] += part * joints_[i].load * mobility_[link].cwiseProduct(*row);
-  }
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+    push(i, part * joints_[i].load + early(i) * h * joints_[i].spring, before_);
 }
 
 /// How the rate of the axis of its own follows from the velocities of parent and child.
@@ -267,8 +268,7 @@ bool Planar::Core::Assembly::find_path(double dt) {
     for (std::size_t k = 0; k < joints_.size(); ++k) {
       const Member& member = joints_[k];
       rates_[k] = (gap_of(k, after_) - member.gap) / dt;
-      if (member.locked)
-        rates_[k][member.free_row()] = system_.rate_of(k, velocities_)[member.free_row()] - member.target;
+      if (member.locked) rates_[k][member.free_row()] -= member.target;
       worst = std::max(worst, rates_[k].cwiseAbs().maxCoeff());
     }
     if (i > 0 && worst * dt < kExact) return true;  // in a short sub-step the first look would be good enough
@@ -286,19 +286,22 @@ double Planar::Core::Assembly::find_gaps() {
     const Member& member = joints_[i];
     Vector& gap = rates_[i] = gap_of(i, after_);
     if (member.locked) {
-      const double travel = travel_of(i, after_);
-      gap[member.free_row()] = std::min(travel - member.low, 0.0) + std::max(travel - member.high, 0.0);
+      double& travel = gap[member.free_row()];
+      travel = std::min(travel - member.low, 0.0) + std::max(travel - member.high, 0.0);
     }
     worst = std::max(worst, gap.cwiseAbs().maxCoeff());
   }
   return worst;
 }
 
-/// What joints are open at the new pose is closed there, as Box2D does it: positions move and velocities do not.
+/// What joints are open at the new pose is closed there, as Box2D does it: positions move and velocities do not, but
+/// for a rotation of the whole that keeps the angular momentum.
 void Planar::Core::Assembly::close_gaps() {
   constexpr double kOpen = 1e-5;  // length units or rad
   constexpr double kMost = 0.1;   // the same: what is moved at once
   constexpr int kMostRounds = 3;  // of Newton's method
+  if (!(find_gaps() > kOpen)) return;
+  const Common had = common_motion();
   for (int round = 0; round < kMostRounds && find_gaps() > kOpen; ++round) {
     for (Vector& gap : rates_) gap = -gap;
     system_.solve(rates_);
@@ -311,6 +314,7 @@ void Planar::Core::Assembly::close_gaps() {
       after_[i] = FlatPose(after_[i].center + part * moves_[i].head<2>(), after_[i].angle + part * moves_[i][2]);
     linearize(after_);
   }
+  keep_rotation(had);
 }
 
 /// Impulses at the new pose, after which its joints allow the velocities.
@@ -321,6 +325,7 @@ void Planar::Core::Assembly::allow(double h, bool ends) {
     velocities_[i] += (1 - early(links_[i])) * h * forces_[i];
     velocities_[i].head<2>() += fall;
   }
+  for (std::size_t i = 0; i < joints_.size(); ++i) push(i, (1 - early(i)) * h * joints_[i].spring, after_);
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const Member& member = joints_[i];
     rates_[i] = system_.rate_of(i, velocities_);
@@ -368,18 +373,23 @@ void Planar::Core::Assembly::keep_impulses(const Member& member) {
   else if (member.kind != JointKind::Fixed)
     warm.motor = driven;
   core_.set_warm(core_.joints[member.joint], warm);
+  core_.joints[member.joint].work = member.work * core_.settings.unit * core_.settings.unit;
 }
 
 /// One of the parts in which what rotates far takes a sub-step. Whether it has a solution.
 bool Planar::Core::Assembly::take(double h, double part, bool last) {
   linearize(before_);
+  begin_works(before_);
   add_loads(h, part);
   for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i].gap = gap_of(i, before_);
   if (!find_path(h)) return false;
+  end_works(before_, part);
   work_ += work_along_path(h);
   linearize(after_);
   close_gaps();
+  begin_works(after_);
   allow(h, last);
+  end_works(after_, 0);
   return std::all_of(velocities_.begin(), velocities_.end(), [](const Vector& v) { return v.allFinite(); });
 }
 
@@ -393,25 +403,32 @@ bool Planar::Core::Assembly::take_all(double dt, int parts) {
   linearize(before_);
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     rates_[i] = system_.rate_of(i, velocities_);
-    if (joints_[i].locked) rates_[i][joints_[i].free_row()] = 0;
+    if (!joints_[i].locked) continue;
+    joints_[i].rate = rates_[i][joints_[i].free_row()];
+    rates_[i][joints_[i].free_row()] = 0;
   }
   give_rates();  // what contacts left, the joints may not allow
-  for (Member& member : joints_) member.impulse.setZero();
+  for (Member& member : joints_) {
+    member.impulse.setZero();
+    member.work = 0;
+  }
   const double began = kinetic();
   work_ = 0;
   for (int i = 0; i < parts; ++i) {
     if (i > 0) before_.swap(after_);
     if (!take(dt / parts, 1.0 / parts, i + 1 == parts)) return false;
   }
-  settle_energy(began);
+  settle_energy(began, dt);
   return true;
 }
 
 void Planar::Core::Assembly::move(double dt) {
-  constexpr double kRotation = 0.2;                 // rad, of a part
-  constexpr int kUsualParts = 8, kMostParts = 128;  // more than usual only where there is no other solution
-  constexpr int kMostReleases = 4;
-  constexpr std::uint64_t kWork = 20;  // for each joint and part
+  constexpr double kRotation = 0.2;                      // rad, of a part
+  constexpr int kUsualParts = 8, kMostParts = 128;       // more than usual only where there is no other solution
+  constexpr double kFineRotation = 0.02, kExact = 1e-7;  // rad; of the energy of motion
+  constexpr int kFineParts = 32;                         // where that energy would not be kept
+  constexpr int kMostChanges = 8;                        // of what motors and limits hold
+  constexpr std::uint64_t kWork = 20;                    // for each joint and part
   if (core_.finishing || !may_move()) return;
   load(dt);
   double fastest = 0;
@@ -425,7 +442,11 @@ void Planar::Core::Assembly::move(double dt) {
       parts *= 2;
       continue;
     }
-    if (i < kMostReleases && release()) continue;
+    if (i < kMostChanges && (release() || catch_up(dt))) continue;
+    if (parts < kFineParts && fastest * dt > kFineRotation * parts && std::abs(missing_) > kExact * kinetic()) {
+      parts *= 2;
+      continue;
+    }
     const double u = core_.settings.unit;
     core_.ledger.limit_loss += lost_ * u * u;
     return keep(dt);

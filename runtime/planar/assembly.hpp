@@ -44,11 +44,23 @@ class Planar::Core::Assembly {
     double reference = 0;                                                   // rad
     FlatPose parent, child;                                                 // of bodies that do not move by themselves
     bool locked = false;                                                    // its motor or a limit decides how it moves
-    double low = 0, high = 0;                                               // limits that it is at, rad or length units
-    double target = 0;                                                      // the rate that motor or limit give it
-    double load = 0;      // the impulse of a motor that is at its strength
-    double strength = 0;  // the most that its impulse may be
+    double least = 0, most = 0;                                             // its limits, rad or length units
+    double low = 0, high = 0;                                               // those that hold it, the same
+    bool caught = false;                                                    // came to one unseen by Box2D
+    double travel = 0;                                                      // where it was along its own axis
+    double speed = 0, target = 0;            // the rates that its motor, and what holds it, are to give it
+    double rate = 0;                         // that it had, of one that is held
+    double work = 0;                         // of its motor, in Box2D's units
+    double spring = 0;                       // the force of its spring and damper, if it is prismatic, the same
+    double rate_then = 0, impulse_then = 0;  // before what is being solved
+    double load = 0;                         // the impulse of a motor that is at its strength
+    double strength = 0;                     // the most that its impulse may be
     Vector gap = Vector::Zero(), impulse = Vector::Zero();
+    /// A limit holds it where it already stood still.
+    bool rests(double dt) const {
+      constexpr double kStill = 1e-6;  // length units or rad
+      return limited() && std::max(std::abs(target), std::abs(rate)) * dt < kStill;
+    }
     bool limited() const { return std::isfinite(low) || std::isfinite(high); }
     Eigen::Index free_row() const { return kind == JointKind::Prismatic ? 1 : 2; }
   };
@@ -60,7 +72,7 @@ class Planar::Core::Assembly {
   void load(double dt);
   void load_joint(std::size_t index, double dt);
   void note_drive(Member& member, double dt);
-  void aim(std::size_t index, double dt);
+  static void aim(Member& member, double dt);
   static FlatPose pose_before(const FlatBody& flat);
   Vector gap_of(std::size_t index, std::span<const FlatPose> poses) const;
   double travel_of(std::size_t index, std::span<const FlatPose> poses) const;
@@ -68,6 +80,9 @@ class Planar::Core::Assembly {
   std::pair<Vector, Vector> axis_rows(std::size_t index, std::span<const FlatPose> poses) const;
   void linearize(std::span<const FlatPose> poses);
   static double early(const Link& link);
+  double early(std::size_t index) const;
+  void push(std::size_t index, double impulse, std::span<const FlatPose> poses);
+  void take_spring(std::size_t index);
   void add_loads(double h, double part);
   void advance_poses(double h);
   bool find_path(double h);
@@ -77,24 +92,31 @@ class Planar::Core::Assembly {
   void allow(double h, bool ends);
   bool take(double h, double part, bool last);
   bool take_all(double dt, int parts);
+  static double motor_share(const Member& member);
   bool release();
+  bool catch_up(double dt);
 
   // assembly_energy.cpp
   struct Common {
     Vector2 center = Vector2::Zero();
     Vector velocity = Vector::Zero();
+    double inertia = 0;  // about the center; 0 where the world holds the assembly
   };
   bool touches_only_fixed() const;
   bool pulled() const;
-  bool driven() const;
-  double drive_work() const;
-  void settle_energy(double began);
+  bool driven(double dt) const;
+  double own_rate(std::size_t index, std::span<const FlatPose> poses) const;
+  void begin_works(std::span<const FlatPose> poses);
+  void end_works(std::span<const FlatPose> poses, double part);
+  double drive_work(double dt);
+  void settle_energy(double began, double dt);
   double kinetic() const;
   double work_along_path(double h) const;
   bool held_by_world() const;
   Common common_motion() const;
+  void keep_rotation(const Common& had);
   Vector carried(const Common& common, std::size_t link) const;
-  void restore_energy(double energy);
+  double restore_energy(double energy);
 
   // assembly.cpp
   void keep(double dt);
@@ -106,8 +128,9 @@ class Planar::Core::Assembly {
   std::pmr::vector<Member> joints_;  // in the order of elimination
   JointSystem system_;
   std::pmr::vector<FlatPose> before_, after_;
-  double work_ = 0;  // of gravity and forces in the sub-step, in Box2D's units
-  double lost_ = 0;  // at limits, the same
+  double work_ = 0;     // of gravity and forces in the sub-step, in Box2D's units
+  double lost_ = 0;     // at limits, the same
+  double missing_ = 0;  // that could not be restored, the same
   std::pmr::vector<Vector> mobility_, velocities_, moves_, forces_, rates_;
 };
 

@@ -16,38 +16,65 @@ bool Planar::Core::Assembly::pulled() const {
   });
 }
 
-/// Motors or limits act in it.
-bool Planar::Core::Assembly::driven() const {
-  return std::any_of(joints_.begin(), joints_.end(),
-                     [](const Member& member) { return member.locked || member.load != 0; });
+/// Motors act in it, or limits that stop what moves.
+bool Planar::Core::Assembly::driven(double dt) const {
+  return std::any_of(joints_.begin(), joints_.end(), [dt](const Member& member) {
+    return member.load != 0 || (member.locked && (member.strength > 0 || !member.rests(dt)));
+  });
 }
 
-/// The work of all motors, by the mean of the rates before and after; a limit does none.
-double Planar::Core::Assembly::drive_work() const {
+/// The rate of a joint along its own axis.
+double Planar::Core::Assembly::own_rate(std::size_t index, std::span<const FlatPose> poses) const {
+  const auto [of_parent, of_child] = axis_rows(index, poses);
+  const JointSystem::Ends& ends = system_.ends(index);
+  double rate = 0;
+  if (ends.parent >= 0) rate += of_parent.dot(velocities_[static_cast<std::size_t>(ends.parent)]);
+  if (ends.child >= 0) rate += of_child.dot(velocities_[static_cast<std::size_t>(ends.child)]);
+  return rate;
+}
+
+/// Takes down what motors are about to act on, at these poses.
+void Planar::Core::Assembly::begin_works(std::span<const FlatPose> poses) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    Member& member = joints_[i];
+    if (!(member.strength > 0) || member.limited()) continue;
+    member.rate_then = own_rate(i, poses);
+    member.impulse_then = member.impulse[member.free_row()];
+  }
+}
+
+/// The work of a motor is that of its impulses, by the means of the rates before and after each.
+/// @param part  of the impulses of motors at their strength that acted since
+void Planar::Core::Assembly::end_works(std::span<const FlatPose> poses, double part) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    Member& member = joints_[i];
+    if (!(member.strength > 0) || member.limited()) continue;
+    const double given = member.locked ? member.impulse[member.free_row()] - member.impulse_then : part * member.load;
+    member.work += given * (member.rate_then + own_rate(i, poses)) / 2;
+  }
+}
+
+/// The work of all motors. A motor that presses on a limit does it with what it gives, a limit does none.
+double Planar::Core::Assembly::drive_work(double dt) {
   double sum = 0;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
-    const Member& member = joints_[i];
-    if (member.locked ? member.limited() : member.load == 0) continue;
-    const auto [of_parent, of_child] = axis_rows(i, after_);
-    const JointSystem::Ends& ends = system_.ends(i);
-    double rate = 0;
-    if (ends.parent >= 0) rate += of_parent.dot(velocities_[static_cast<std::size_t>(ends.parent)]);
-    if (ends.child >= 0) rate += of_child.dot(velocities_[static_cast<std::size_t>(ends.child)]);
-    const double given = member.locked ? member.impulse[member.free_row()] : member.load;
-    sum += given * (core_.joints[member.joint].rate + rate) / 2;
+    Member& member = joints_[i];
+    if (member.strength > 0 && member.limited() && member.speed != member.target)
+      member.work = motor_share(member) * (travel_of(i, after_) - member.travel) / dt;
+    sum += member.work;
   }
   return sum;
 }
 
 /// The works of gravity and of constant forces are known exactly: energy that differs from them is an error. Motors and
 /// limits may take more, so energy only goes back if nothing of this kind acts. The works of springs are not exact.
-/// @param began  the energy of motion as the sub-step began, in Box2D's units
-void Planar::Core::Assembly::settle_energy(double began) {
-  lost_ = 0;
+/// @param began  the energy of motion as the sub-step of dt seconds began, in Box2D's units
+void Planar::Core::Assembly::settle_energy(double began, double dt) {
+  lost_ = missing_ = 0;
   if (pulled()) return;
-  const bool drives = driven();
-  const double energy = began + work_ + (drives ? drive_work() : 0);
-  if (!drives || kinetic() > energy) restore_energy(energy);
+  const bool drives = driven(dt);
+  const double energy = began + work_ + drive_work(dt);
+  if (!drives || kinetic() > energy) missing_ = restore_energy(energy);
   const bool limits = std::any_of(joints_.begin(), joints_.end(),
                                   [](const Member& member) { return member.locked && member.limited(); });
   if (limits) lost_ = std::max(energy - kinetic(), 0.0);
@@ -83,7 +110,7 @@ bool Planar::Core::Assembly::held_by_world() const {
 Planar::Core::Assembly::Common Planar::Core::Assembly::common_motion() const {
   Common common;
   if (held_by_world()) return common;
-  double mass = 0, inertia = 0, momentum = 0;
+  double mass = 0, momentum = 0;
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const double m = 1 / mobility_[i][0];
     mass += m;
@@ -95,11 +122,19 @@ Planar::Core::Assembly::Common Planar::Core::Assembly::common_motion() const {
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const double m = 1 / mobility_[i][0], own = 1 / mobility_[i][2];
     const Vector2 arm = after_[i].center - common.center;
-    inertia += own + m * arm.squaredNorm();
+    common.inertia += own + m * arm.squaredNorm();
     momentum += own * velocities_[i][2] + m * cross(arm, Vector2(velocities_[i].head<2>()));
   }
-  common.velocity[2] = momentum / inertia;
+  common.velocity[2] = momentum / common.inertia;
   return common;
+}
+
+/// Gives all links together the rotation with which their angular momentum is what it was, now that they have moved.
+void Planar::Core::Assembly::keep_rotation(const Common& had) {
+  if (!(had.inertia > 0)) return;
+  Common change = common_motion();
+  change.velocity = Vector(0, 0, had.inertia * had.velocity[2] / change.inertia - change.velocity[2]);
+  for (std::size_t i = 0; i < links_.size(); ++i) velocities_[i] += carried(change, i);
 }
 
 /// The velocity of a link, as if it moved with all others as a rigid body.
@@ -111,7 +146,8 @@ Planar::Core::Assembly::Vector Planar::Core::Assembly::carried(const Common& com
 /// Scales the motion of the links among one another, which keeps all momenta, so that the energy is what it was and
 /// what the works came to.
 /// @param energy  of motion, that there is to be, in Box2D's units
-void Planar::Core::Assembly::restore_energy(double energy) {
+/// @return        what of it is missing afterwards: where hardly anything moves among the links, they cannot take it
+double Planar::Core::Assembly::restore_energy(double energy) {
   constexpr double kMost = 0.1;  // of the energy of that motion
   const Common common = common_motion();
   const double missing = energy - kinetic();
@@ -121,9 +157,10 @@ void Planar::Core::Assembly::restore_energy(double energy) {
     moves_[i] = velocities_[i] - carried(common, i);
     among += moves_[i].cwiseAbs2().cwiseQuotient(mobility_[i]).sum() / 2;
   }
-  if (!(among > 0) || !std::isfinite(missing)) return;
-  const double scale = std::sqrt(1 + std::clamp(missing / among, -kMost, kMost));
+  if (!(among > 0) || !std::isfinite(missing)) return missing;
+  const double taken = std::clamp(missing, -kMost * among, kMost * among), scale = std::sqrt(1 + taken / among);
   for (std::size_t i = 0; i < links_.size(); ++i) velocities_[i] += (scale - 1) * moves_[i];
+  return missing - taken;
 }
 
 /// Whether nothing pushes it but bodies that neither move by themselves nor by scripts.

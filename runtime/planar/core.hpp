@@ -25,6 +25,7 @@ struct FlatJoint : JointRecord {
   double position = 0;  // rad or m, as last known: full rotations are counted from here
   b2Joint* b2 = nullptr;
   double rate = 0;     // of its own axis at the start of the sub-step, in Box2D's units
+  double work = 0;     // J, of its motor in the sub-step, where its assembly was solved as a whole
   double pull = 0;     // N or N*m that its spring, damper and set force give in this sub-step
   double bend = 0;     // how `rate` changed in the last sub-step, by time
   bool loose = false;  // its limit is off, since it is to bounce there

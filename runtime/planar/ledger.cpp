@@ -112,6 +112,7 @@ double Planar::Core::joint_rate(const FlatJoint& joint) const {
 /// The work of a joint's motor in this sub-step, J.
 double Planar::Core::motor_work(const FlatJoint& joint, double dt) const {
   if (!joint.used || !joint.b2 || !(joint.drive.strength_limit > 0) || joint.is.kind == JointKind::Fixed) return 0;
+  if (is_solved(joint)) return joint.work;
   const auto rate = static_cast<float>(1 / dt);
   const double strength = joint.is.kind == JointKind::Revolute
                               ? static_cast<const b2RevoluteJoint*>(joint.b2)->GetMotorTorque(rate)

@@ -72,7 +72,10 @@ void Response::hold_joints() {
 void Response::add_rows(const FlatJoint& joint, Matrix& jacobian, Eigen::Index& rows) const {
   const FlatBody* child = core_.find(joint.is.child);
   const FlatBody* parent = joint.is.parent == kNoBody ? nullptr : core_.find(joint.is.parent);
-  const Vector2 point_a = vector_of(joint.b2->GetAnchorA()), point_b = vector_of(joint.b2->GetAnchorB());
+  const bool slides = joint.is.kind == JointKind::Prismatic;
+  const Vector2 point_b = vector_of(joint.b2->GetAnchorB());
+  // What slides is held where the child is now: only there do equal and opposite forces keep angular momentum.
+  const Vector2 point_a = slides ? point_b : vector_of(joint.b2->GetAnchorA());
   const auto point_row = [&](const Vector2& along) {
     for (const auto& [flat, point, sign] : {std::tuple{parent, point_a, -1.0}, std::tuple{child, point_b, 1.0}}) {
       const Eigen::Index at = flat ? index_of(*flat) : -1;
@@ -89,7 +92,7 @@ void Response::add_rows(const FlatJoint& joint, Matrix& jacobian, Eigen::Index& 
       if (const Eigen::Index at = flat ? index_of(*flat) : -1; at >= 0) jacobian(rows, at + 2) = sign;
     ++rows;
   };
-  if (joint.is.kind == JointKind::Prismatic) {
+  if (slides) {
     point_row(left_of(core_.axis_of(joint)));
     rotation_row();
     return;

@@ -251,7 +251,7 @@ void Planar::Core::run(double dt, bool handled) {
       bounce = false;
       break;
     }
-    if (!hit.handled && !stop) ++located;
+    if (!hit.handled && (!stop || !settings.accuracy.locate_impacts)) ++located;
     const double t = std::min(hit.t, left);
     if (t > 0) step(t);
     left -= t;
