@@ -57,9 +57,9 @@ class Planar::Core::Assembly {
     double strength = 0;                     // the most that its impulse may be
     Vector gap = Vector::Zero(), impulse = Vector::Zero();
     /// A limit holds it where it already stood still.
-    bool rests(double dt) const {
-      constexpr double kStill = 1e-6;  // length units or rad
-      return limited() && std::max(std::abs(target), std::abs(rate)) * dt < kStill;
+    /// @param still  length units or rad, that it moves at most in a sub-step of dt seconds while it stands
+    bool rests(double dt, double still) const {
+      return limited() && std::max(std::abs(target), std::abs(rate)) * dt < still;
     }
     bool limited() const { return std::isfinite(low) || std::isfinite(high); }
     Eigen::Index free_row() const { return kind == JointKind::Prismatic ? 1 : 2; }
@@ -104,6 +104,7 @@ class Planar::Core::Assembly {
   };
   bool touches_only_fixed() const;
   bool pulled() const;
+  double least_move() const;
   bool driven(double dt) const;
   double own_rate(std::size_t index, std::span<const FlatPose> poses) const;
   void begin_works(std::span<const FlatPose> poses);

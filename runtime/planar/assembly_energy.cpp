@@ -16,10 +16,18 @@ bool Planar::Core::Assembly::pulled() const {
   });
 }
 
+/// A joint that moves by less stands still, length units or rad. Single precision leaves more far from the origin.
+double Planar::Core::Assembly::least_move() const {
+  constexpr double kStill = 1e-6, kSingle = 2.5e-7;
+  double farthest = 0;
+  for (const FlatPose& pose : after_) farthest = std::max(farthest, pose.center.cwiseAbs().maxCoeff());
+  return kStill + kSingle * farthest;
+}
+
 /// Motors act in it, or limits that stop what moves.
 bool Planar::Core::Assembly::driven(double dt) const {
-  return std::any_of(joints_.begin(), joints_.end(), [dt](const Member& member) {
-    return member.load != 0 || (member.locked && (member.strength > 0 || !member.rests(dt)));
+  return std::any_of(joints_.begin(), joints_.end(), [dt, still = least_move()](const Member& member) {
+    return member.load != 0 || (member.locked && (member.strength > 0 || !member.rests(dt, still)));
   });
 }
 
@@ -75,8 +83,10 @@ void Planar::Core::Assembly::settle_energy(double began, double dt) {
   const bool drives = driven(dt);
   const double energy = began + work_ + drive_work(dt);
   if (!drives || kinetic() > energy) missing_ = restore_energy(energy);
-  const bool limits = std::any_of(joints_.begin(), joints_.end(),
-                                  [](const Member& member) { return member.locked && member.limited(); });
+  // One at which a joint rests takes nothing: that would be round-off.
+  const bool limits = std::any_of(joints_.begin(), joints_.end(), [dt, still = least_move()](const Member& member) {
+    return member.locked && member.limited() && !member.rests(dt, still);
+  });
   if (limits) lost_ = std::max(energy - kinetic(), 0.0);
 }
 
