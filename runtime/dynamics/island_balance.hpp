@@ -91,7 +91,7 @@ class Credit {
 
  private:
   static double most_of(const Tree& tree) {
-    constexpr double kPart = 0.0075;  // of the largest energy of motion
+    constexpr double kPart = 0.005;  // of the largest energy of motion
     return kPart * tree.fastest;
   }
 

@@ -347,14 +347,14 @@ bool Positions::hold_off(double h) {
   return true;
 }
 
-/// Springs pull at the cluster's links.
-bool Positions::sprung(const Clustered& one) const {
+/// Springs pull at the cluster's links, or loops hold them together.
+bool Positions::yields(const Clustered& one) const {
   const auto pulls = [this](const TreeLink& link) {
     return link.joint != kNoJoint && state_.core.joints[link.joint].drive.stiffness > 0;
   };
   const std::span trees = one.entry->system->trees();
   return !one.entry->springs.empty() || std::any_of(trees.begin(), trees.end(), [&](const Tree* tree) {
-    return std::any_of(tree->links.begin(), tree->links.end(), pulls);
+    return !tree->loops.empty() || std::any_of(tree->links.begin(), tree->links.end(), pulls);
   });
 }
 
@@ -362,8 +362,8 @@ bool Positions::sprung(const Clustered& one) const {
 /// not hold against a spring that is fast for the sub-step, although the velocities at its ends say that it does.
 bool Positions::sank() {
   constexpr double kSunk = 0.005;  // of the bodies' size
-  const auto by_spring = [this](const Clustered& one) { return sprung(one); };
-  if (rows_.contacts() == 0 || std::none_of(state_.clusters.begin(), state_.clusters.end(), by_spring)) return false;
+  const auto may = [this](const Clustered& one) { return yields(one); };
+  if (rows_.contacts() == 0 || std::none_of(state_.clusters.begin(), state_.clusters.end(), may)) return false;
   state_.place_links();
   for (std::size_t i = 0; i < rows_.contacts(); ++i) {
     const auto& [touch, pair, row, law] = rows_.contact(i);

@@ -49,7 +49,7 @@ class Positions {
   void take_back_pushes(double part, double h);
   bool on_spring(int mover) const;
   bool find_struck(double h);
-  bool sprung(const Clustered& one) const;
+  bool yields(const Clustered& one) const;
   void book_moves(double sign);
   void book_pushed();
   void book_way(double work, Tree* tree);
