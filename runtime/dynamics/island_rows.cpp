@@ -143,9 +143,10 @@ Meeting Rows::carried(const Touch& touch) const {
   if (!by_a) return {touch.start, touch.normal};
   const Vector3 from_a = taken(touch, true), from_b = taken(touch, false);
   const Shape &a = state_.shape(pair.a), &b = state_.shape(pair.b);
-  constexpr double kApart = 1e-4;  // of the smaller body
-  const double apart = kApart * std::min(a.bounding_radius(), b.bounding_radius());
-  if (!((from_a - from_b).squaredNorm() > apart * apart)) return {0.5 * (from_a + from_b), touch.normal};
+  constexpr double kRolls = 1e-6, kSlides = 1e-3;  // of the smaller body: less is left out
+  const double least = (is_round(a) ? kRolls : kSlides) * std::min(a.bounding_radius(), b.bounding_radius());
+  const Vector3 apart = from_a - from_b, slip = apart - touch.normal.dot(apart) * touch.normal;
+  if (!(slip.squaredNorm() > least * least)) return {0.5 * (from_a + from_b), touch.normal};
   return carried_between({a, state_.pose_of(pair.a), from_a}, {b, state_.pose_of(pair.b), from_b}, touch.normal);
 }
 
