@@ -88,7 +88,7 @@ std::unique_ptr<b2Shape> shape_of(const FlatPiece& piece, double unit) {
 }
 
 /// The distance of the farthest point of a shape from a center.
-double reach_of(const Outline& outline, const Vector2& center) {
+double farthest_of(const Outline& outline, const Vector2& center) {
   double farthest = 0;
   for (const FlatPiece& piece : outline.pieces) {
     if (piece.kind == FlatPiece::Kind::Circle)
@@ -147,7 +147,7 @@ void Planar::Core::fit(FlatBody& flat) {
   for (std::uint32_t number = 0; number < pieces.size(); ++number) add_fixture(flat, *pieces[number], number);
   if (flat.fixed) return;
   flat.mass = mass;
-  flat.reach = reach_of(outline, mass.center_of_mass.head<2>()) / settings.unit;
+  flat.reach = farthest_of(outline, mass.center_of_mass.head<2>()) / settings.unit;
   flat.b2->SetMassData(&data);
 }
 
