@@ -1,4 +1,4 @@
-// Points of round bodies are found again by the normal.
+// Points of round bodies are found again by the normal, and those between two bodies by their curvatures.
 #include "runtime/dynamics/carried_point.hpp"
 
 #include <cmath>
@@ -86,7 +86,7 @@ Matrix2 curvature(const Shape& shape, const Vector3& arm, const Quaternion& orie
   return (kSharp / radius) * all;
 }
 
-Matrix2 curvature(const Rolling& one, const Vector3& normal, const Tangents& plane) {
+Matrix2 curvature(const Carrier& one, const Vector3& normal, const Tangents& plane) {
   if (!is_round(one.shape)) return curvature(one.shape, one.taken - one.to.location, one.to.orientation, plane);
   if (one.shape.kind() == ShapeKind::Sphere) return Matrix2::Identity() / one.shape.radius();
   const Round& round = one.shape.round();
@@ -115,7 +115,7 @@ Vector3 carried_by(const Shape& shape, const Vector3& point, const Vector3& norm
   return to.location + found.value_or(shortest(axis, arm));
 }
 
-Meeting carried_between(const Rolling& a, const Rolling& b, const Vector3& normal) {
+Meeting carried_between(const Carrier& a, const Carrier& b, const Vector3& normal) {
   constexpr double kLeast = 1e-9;  // of the larger curvature: where both are flat, they meet in the middle
   Vector3 first, second;
   contact::tangents(normal, first, second);

@@ -17,14 +17,14 @@ Vector3 carried_by(const Shape& shape, const Vector3& point, const Pose& from, c
 /// @param normal  world, a unit vector of either direction
 Vector3 carried_by(const Shape& shape, const Vector3& point, const Vector3& normal, const Pose& from, const Pose& to);
 
-/// A body that touches another.
-struct Rolling {
+/// A body that takes its point of contact along.
+struct Carrier {
   const Shape& shape;
   Pose to;        // where it is now
-  Vector3 taken;  // where it took the point that was touched, by carried_by() along the normal
+  Vector3 taken;  // world: where it took the point that was touched, by carried_by() along the normal
 };
 
-/// Where two bodies touch, once both have moved.
+/// Where two bodies touch, once both have moved: world; the normal is a unit vector from b toward a.
 struct Meeting {
   Vector3 point, normal;
 };
@@ -34,6 +34,6 @@ struct Meeting {
 /// tilts by A (A + B)^-1 B x (Montana 1988: the kinematics of contact and grasp). A face has no curvature, and an edge
 /// or corner more than anything round; between bodies with faces the normal stays.
 /// @param normal  world, a unit vector from b toward a, as it was
-Meeting carried_between(const Rolling& a, const Rolling& b, const Vector3& normal);
+Meeting carried_between(const Carrier& a, const Carrier& b, const Vector3& normal);
 
 }  // namespace breve::island

@@ -117,9 +117,9 @@ double work_on_pushed(Clustered& one) {
     const Vector3 way = articulated::com_position(tree.model, tree.data, i) - link.pushed_center;
     sum += (link.force + link.asked).dot(way);
     if (link.torque == Vector3::Zero()) return;
-    const Eigen::AngleAxisd turn(Quaternion(Eigen::Matrix3d(tree.data.of(i).rotation)) *
-                                 link.pushed_orientation.conjugate());
-    sum += turn.angle() * link.torque.dot(turn.axis());
+    const Eigen::AngleAxisd rotation(Quaternion(Eigen::Matrix3d(tree.data.of(i).rotation)) *
+                                     link.pushed_orientation.conjugate());
+    sum += rotation.angle() * link.torque.dot(rotation.axis());
   });
   return sum;
 }
