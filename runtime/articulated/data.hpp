@@ -1,6 +1,7 @@
 // Workspace of the algorithms: everything they write, allocated once for a model. One Data serves one thread at a time.
 #pragma once
 
+#include <cstdint>
 #include <memory_resource>
 #include <vector>
 
@@ -75,6 +76,23 @@ class Data {
   /// The data of a joint with more than one degree of freedom; for others some entry that nobody reads.
   WideWork& wide_of(const Body& body) { return wide[static_cast<std::size_t>(body.wide + 1)]; }
   const WideWork& wide_of(const Body& body) const { return wide[static_cast<std::size_t>(body.wide + 1)]; }
+
+  /// Whether all that forward_kinematics writes belongs to this state, to the bit: passes need not place links again.
+  bool stands_at(const State& state) const { return stands_ && same_bits(at_.q, state.q) && same_bits(at_.v, state.v); }
+  /// The same of what depends on q alone: rotation, offset and axes.
+  bool stands_at(const Vector& q) const { return stands_ && same_bits(at_.q, q); }
+  void stand_at(const State& state);
+  /// Some pass is about to place links elsewhere.
+  void leave() { stands_ = false; }
+  /// Another number for each time that forward_kinematics places links: what was summed over them holds while it stays.
+  std::uint64_t standing() const { return standing_; }
+
+ private:
+  static bool same_bits(const Vector& a, const Vector& b);
+
+  State at_;
+  bool stands_ = false;
+  std::uint64_t standing_ = 0;
 };
 
 }  // namespace breve::articulated

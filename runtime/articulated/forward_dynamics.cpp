@@ -31,14 +31,15 @@ void load(const Body& body, const Wrench* wrench, Work& w) {
   w.force -= wrench->force;
 }
 
-/// @param again  since the last call only loads have changed: everything stands and rotates as it did
-void outward(const Model& model, Data& data, const State& state, const Loads& loads, bool again) {
+/// @param stands  links stand and rotate as they are to
+void outward(const Model& model, Data& data, const State& state, const Loads& loads, bool stands) {
+  if (!stands) data.leave();
   const double *q = state.q.data(), *v = state.v.data();
   const Wrench* wrench = loads.wrenches.empty() ? nullptr : loads.wrenches.data();
   Work* link = data.work.data();
   for (const Body& body : model.bodies()) {
     Work& w = *++link;
-    if (!again) {
+    if (!stands) {
       const Work& parent = data.of(body.parent);
       WideWork& wide = data.wide_of(body);
       place(body, parent, q, w, wide);
@@ -95,11 +96,11 @@ const Vector& forward_dynamics(const Model& model, Data& data, const State& stat
   const bool motors = motor_lag(loads, step) > 0 && !loads.drives.empty();
   if (motors) begin_motors(model, loads, guess, data);
   MotorSearch search;
-  bool again = false;
+  bool stands = data.stands_at(state);
   do {
     start(data, loads);
     gather_joint_forces(model, loads, state, step, data);
-    outward(model, data, state, loads, std::exchange(again, true));
+    outward(model, data, state, loads, std::exchange(stands, true));
     inward(model, data);
     accelerate(model, data);
   } while (motors && search.changes(model, loads, state, step, data));
@@ -112,10 +113,12 @@ const Vector& forward_dynamics(const Model& model, Data& data, const State& stat
 
 void factorize(const Model& model, Data& data, const State& state, const Loads& loads, double step) {
   gather_joint_forces(model, loads, state, step, data);
+  const bool stands = data.stands_at(state.q);
+  if (!stands) data.leave();
   Work* link = data.work.data();
   for (const Body& body : model.bodies()) {
     Work& w = *++link;
-    place(body, data.of(body.parent), state.q.data(), w, data.wide_of(body));
+    if (!stands) place(body, data.of(body.parent), state.q.data(), w, data.wide_of(body));
     const Vector3 moment = w.rotation * body.moment;
     w.inertia.set_rigid(body.inertia.rotated(w.rotation), moment, body.mass);
   }

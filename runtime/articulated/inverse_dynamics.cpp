@@ -27,6 +27,7 @@ void need(const Body& body, const Wrench* wrench, Work& w) {
 void inverse_dynamics(const Model& model, Data& data, const State& state, const Vector& acceleration,
                       const Loads& loads, Vector& tau) {
   const double *q = state.q.data(), *v = state.v.data();
+  data.leave();
   Work& world = data.work.front();
   world.couple.setZero();
   world.force.setZero();

@@ -6,13 +6,15 @@
 namespace breve::articulated {
 
 void forward_kinematics(const Model& model, Data& data, const State& state) {
+  if (data.stands_at(state)) return;
+  const bool placed = data.stands_at(state.q);
   const double *q = state.q.data(), *v = state.v.data();
   int i = 0;
   for (const Body& body : model.bodies()) {
     Work& w = data.of(i);
     const Work& parent = data.of(body.parent);
     WideWork& wide = data.wide_of(body);
-    place(body, parent, q, w, wide);
+    if (!placed) place(body, parent, q, w, wide);
     move(body, parent, v, w, wide);
     const Motion& from = data.motion_of(body.parent);
     Motion& to = data.motion_of(i++);
@@ -21,6 +23,7 @@ void forward_kinematics(const Model& model, Data& data, const State& state) {
     Vector3 ignored = Vector3::Zero();
     add_joint_motion(body, w, wide, v, ignored, to.velocity);
   }
+  data.stand_at(state);
 }
 
 Pose pose(const Data& data, int link) { return {data.motion_of(link).origin, data.of(link).rotation}; }

@@ -29,6 +29,7 @@ void fill_column(const Model& model, const Data& data, int i, int k, Vector& uni
 
 void mass_matrix(const Model& model, Data& data, const Vector& q, Eigen::MatrixXd& mass) {
   mass.setZero(model.velocities(), model.velocities());
+  data.leave();
   for (int i = 0; i < model.size(); ++i) {
     const Body& body = model.body(i);
     Work& w = data.of(i);

@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/articulated/energy.hpp"
-#include "runtime/articulated/kinematics.hpp"
-
 namespace breve {
 
 using articulated::Whole;
@@ -24,8 +21,7 @@ void impose(std::span<Tree* const> trees, const Whole& now, const Whole& wanted)
 Whole measure(std::span<Tree* const> trees) {
   Whole sum;
   for (Tree* tree : trees) {
-    articulated::forward_kinematics(tree->model, tree->data, tree->state);
-    const Whole one = articulated::measure_whole(tree->model, tree->data);
+    const Whole& one = tree->measured();
     if (tree == trees.front())
       sum = one;
     else
@@ -37,7 +33,7 @@ Whole measure(std::span<Tree* const> trees) {
 Common common_of(std::span<Tree* const> trees, bool held) {
   Common common;
   const Whole whole = measure(trees);
-  for (const Tree* tree : trees) common.inner += articulated::kinetic_energy(tree->model, tree->data);
+  for (Tree* tree : trees) common.inner += tree->kinetic();
   if (held || !std::all_of(trees.begin(), trees.end(), [](const Tree* tree) { return tree->loose; })) return common;
   articulated::Symmetric3 inverse;
   if (articulated::invert(whole.inertia, inverse)) common.spin = inverse * whole.spin;

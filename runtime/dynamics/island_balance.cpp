@@ -24,7 +24,7 @@ void Balance::keep_start() {
 }
 
 void Balance::back_to_start() {
-  state_.placed = state_.booked = false;
+  state_.booked = false;
   const std::uint64_t evaluations = state_.result.counters.evaluations;
   state_.result.counters = start_.counters;
   state_.result.counters.evaluations = evaluations;
@@ -128,7 +128,6 @@ Balance::Stored Balance::measure(bool start) {
   all.springs += network_energy(state_);
   for (const Clustered& one : state_.clusters) all.springs += spring_energy(state_, one);
   for (const NearPair* pair : state_.pairs) all.springs += pair->stored;
-  state_.placed = true;
   state_.booked = !start;
   return all;
 }

@@ -103,7 +103,6 @@ void Books::note_smooth(double free_works) {
     smooth_stored_ += stored;
     sub_start_.smooth_kinetic += kinetic;
   }
-  state_.placed = true;
 }
 
 double Books::taken() {

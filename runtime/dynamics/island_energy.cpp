@@ -160,11 +160,6 @@ double farthest_rotation(const articulated::Model& model, const articulated::Vec
   return farthest;
 }
 
-double kinetic(Tree& tree) {
-  articulated::forward_kinematics(tree.model, tree.data, tree.state);
-  return articulated::kinetic_energy(tree.model, tree.data);
-}
-
 }  // namespace
 
 double share_without_gain(Tree& tree, const articulated::Vector& way) {
@@ -174,12 +169,12 @@ double share_without_gain(Tree& tree, const articulated::Vector& way) {
   // Loops are closed by the whole way.
   if (!tree.loops.empty() || !(farthest_rotation(tree.model, way) > kNear)) return 1;
   tree.work_q = tree.state.q;
-  const double before = kinetic(tree);
+  const double before = tree.kinetic();
   double share = 1;
   for (int i = 1; i <= kTries; ++i) {
     tree.work_w = share * way;
     articulated::move(tree.model, tree.work_q, tree.work_w, tree.state.q);
-    if (kinetic(tree) <= (1 + kFew) * before) break;
+    if (tree.kinetic() <= (1 + kFew) * before) break;
     share = i < kTries ? kShorter * share : 0;
   }
   tree.state.q = tree.work_q;

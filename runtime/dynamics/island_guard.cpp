@@ -255,7 +255,7 @@ void Guard::stand_still() {
     for (Tree* tree : one.entry->system->trees()) tree->state.v.setZero();
   }
   if (std::isfinite(lost)) state_.result.ledger.residual -= lost;
-  state_.placed = state_.booked = false;
+  state_.booked = false;
 }
 
 /// The next step does not begin from the forces of contacts and limits that failed: else it would be the same step.
@@ -272,7 +272,7 @@ void Guard::forget_forces() {
 
 /// Takes velocities, and writes down that their energy is gone: first as what contacts and limits gave in the step.
 void Guard::put_to_rest(Momenta momenta, double h) {
-  state_.placed = state_.booked = false;
+  state_.booked = false;
   const auto take = [](Energy& ledger, const Energy& start, double lost) {
     const double rows = losses(start, ledger) + ledger.drag_loss - start.drag_loss;
     const double repaid = std::clamp(rows, 0.0, std::max(lost, 0.0));

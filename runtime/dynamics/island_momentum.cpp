@@ -150,7 +150,7 @@ void Momentum::take_from_all(double part, Payers payers) {
     state_.result.ledger.contact_loss += taken;
     if (one.alone()) one.entry->system->trees().front()->ledger.contact_loss += taken;
   }
-  state_.placed = state_.booked = false;
+  state_.booked = false;
 }
 
 /// Takes a part of moving() that nothing gave.
@@ -168,7 +168,7 @@ void Momentum::undo_gain(double part, bool told, Payers payers) {
     state_.result.ledger.residual -= taken;
     if (one.alone()) one.entry->system->trees().front()->ledger.residual -= taken;
   }
-  state_.placed = state_.booked = false;
+  state_.booked = false;
 }
 
 /// What bodies without joints have in common, if nothing outside touches them: they keep their momenta.
@@ -207,7 +207,7 @@ void Momentum::slow_free_bodies(const Common& common, double taken) {
     one.now.velocity = whole + left * (one.now.velocity - whole);
     one.now.spin = common.spin + left * (one.now.spin - common.spin);
   }
-  state_.placed = state_.booked = false;
+  state_.booked = false;
 }
 
 /// @return  J, that this took
@@ -249,7 +249,7 @@ void Momentum::coast(double h) {
     state_.result.ledger.residual += more;
     if (one.alone()) trees.front()->ledger.residual += more;
   }
-  state_.placed = state_.booked = false;
+  state_.booked = false;
 }
 
 }  // namespace breve::island

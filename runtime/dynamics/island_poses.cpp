@@ -1,6 +1,5 @@
 // Where the bodies of an island are and how fast they move.
 #include <algorithm>
-#include <utility>
 
 #include "runtime/articulated/forward_dynamics.hpp"
 #include "runtime/articulated/kinematics.hpp"
@@ -44,7 +43,6 @@ Vector3 State::point_velocity(BodyIndex body, const Vector3& point) const {
 /// to the forces in them: by how much they will be stretched, and how fast.
 void State::place(double h) {
   const articulated::Loads none;
-  const bool stand = std::exchange(placed, false);
   for (const Clustered& one : clusters) {
     const bool implicit = h > 0 && one.semi && (accuracy.implicit_joints || one.fast_springs);
     for (Tree* tree : one.entry->system->trees()) {
@@ -52,13 +50,12 @@ void State::place(double h) {
         articulated::factorize(tree->model, tree->data, tree->state, tree->springs, h);
       else
         articulated::factorize(tree->model, tree->data, tree->state, none);
-      if (!stand) articulated::forward_kinematics(tree->model, tree->data, tree->state);
+      articulated::forward_kinematics(tree->model, tree->data, tree->state);
     }
   }
 }
 
 void State::place_links() {
-  if (std::exchange(placed, false)) return;
   for (Tree* tree : trees) articulated::forward_kinematics(tree->model, tree->data, tree->state);
 }
 

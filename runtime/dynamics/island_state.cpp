@@ -30,7 +30,6 @@ void State::clear() {
   trees.clear();
   pairs.clear();
   accuracy_set_ = false;
-  placed = false;
   result.counters = {};
   result.ledger = {};
   result.impacts.clear();

@@ -186,7 +186,6 @@ struct State {
   Meter meter;
   bool finished = false;  // coarsely: the accuracy is not what was asked for
   bool squeezed = false;  // what a script moves presses where nothing can go: an overlap is not to be mended
-  bool placed = false;    // links stand where stored energy was measured: nothing has moved since
   bool booked = false;    // the books have the energy that the island holds now
   bool followed = false;  // the sub-step is a part of one, so short that its rows push as springs let them
   double swung = 0;       // J, the most that networks moved with at some time of the step

@@ -74,7 +74,6 @@ double Step::longest(double left, bool lies) const {
 
 /// Nothing is near and nothing holds: smooth motion is all.
 void Step::undisturbed(double start, double h) {
-  state_.placed = false;
   const double part = longest(h, false);
   const auto parts = static_cast<int>(std::llround(h / part));
   for (int i = 0; i < parts; ++i) {

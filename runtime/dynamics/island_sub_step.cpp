@@ -138,7 +138,6 @@ void SubStep::solve_as_learned(double time, double h) {
   solve(time, h);
   if (motion_of_trees(state_) <= most) return;
   state_.restore();
-  state_.placed = false;
   state_.place_links();
   prediction_.make(h);
   solve(time, h);

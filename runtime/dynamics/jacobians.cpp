@@ -70,15 +70,11 @@ void fill_loop_row(const Tree& tree, const LoopRows& loop, const LoopRow& row, d
   std::fill(j, j + n, 0.0);
 }
 
-/// Rate of the position by each of the joint's velocities, read off column by column.
 void fill_limit_row(const Tree& tree, const JointEntry& joint, int axis, double sign, double* j) {
   std::fill(j, j + tree.model.velocities(), 0.0);
   const articulated::Body& body = tree.model.body(joint.link);
-  for (int k = 0; k < articulated::velocity_count(body.type); ++k) {
-    double unit[3] = {0, 0, 0};
-    unit[k] = 1;
-    j[body.v + k] = sign * joint_velocity(joint.is, joint.flipped, tree.state.q.data() + body.q, unit)[axis];
-  }
+  const Vector3 rates = joint_velocity_row(joint.is, joint.flipped, tree.state.q.data() + body.q, axis);
+  for (int k = 0; k < articulated::velocity_count(body.type); ++k) j[body.v + k] = sign * rates[k];
 }
 
 }  // namespace breve

@@ -123,6 +123,15 @@ JointVector joint_velocity(const JointDescription& is, bool flipped, const doubl
   return JointVector::Zero();
 }
 
+Vector3 joint_velocity_row(const JointDescription& is, bool flipped, const double* q, int axis) {
+  if (is.kind != JointKind::Ball) return Vector3::Unit(is.kind == JointKind::Universal && flipped ? 1 - axis : axis);
+  const Eigen::Matrix3d spins = to_model(is, flipped, q).transpose();
+  const auto rates = ball_rates(axes_of(is), joint_position(is, flipped, q)).fullPivLu();
+  Vector3 row;
+  for (int k = 0; k < 3; ++k) row[k] = rates.solve(spins.col(k))[axis];
+  return row;
+}
+
 void put_joint_position(const JointDescription& is, bool flipped, const JointVector& position, double* q) {
   switch (is.kind) {
     case JointKind::Revolute:

@@ -21,6 +21,8 @@ void read_joint(const JointDescription& is, bool flipped, const Quaternion& rota
 
 JointVector joint_position(const JointDescription& is, bool flipped, const double* q);
 JointVector joint_velocity(const JointDescription& is, bool flipped, const double* q, const double* v);
+/// The rate of one position by each of the model's velocities; entries beyond these are of no use.
+Vector3 joint_velocity_row(const JointDescription& is, bool flipped, const double* q, int axis);
 /// The inverses: numbers of the model from positions and rates.
 void put_joint_position(const JointDescription& is, bool flipped, const JointVector& position, double* q);
 void put_joint_velocity(const JointDescription& is, bool flipped, const double* q, const JointVector& rate, double* v);

@@ -13,8 +13,7 @@ namespace breve {
 
 Energy Dynamics::Core::energy_of(Tree& tree) const {
   Energy now = tree.ledger;
-  articulated::forward_kinematics(tree.model, tree.data, tree.state);
-  now.kinetic = articulated::kinetic_energy(tree.model, tree.data);
+  now.kinetic = tree.kinetic();
   now.potential = articulated::potential_energy(tree.model, tree.data, settings.gravity);
   now.springs = joint_springs(tree);
   return now;

@@ -1,6 +1,9 @@
 // The memory and the workspace of one tree.
 #include "runtime/dynamics/tree.hpp"
 
+#include <utility>
+
+#include "runtime/articulated/energy.hpp"
 #include "runtime/articulated/kinematics.hpp"
 
 namespace breve {
@@ -13,7 +16,7 @@ std::size_t estimate(const std::vector<articulated::Link>& links) {
   for (const articulated::Link& link : links)
     numbers +=
         static_cast<std::size_t>(articulated::position_count(link.type) + articulated::velocity_count(link.type));
-  constexpr std::size_t kVectors = 63;  // of an integrator, Data, State and Loads, each (nq) or (nv)
+  constexpr std::size_t kVectors = 64;  // of an integrator, Data, State and Loads, each (nq) or (nv)
   return links.size() * (sizeof(articulated::Body) + sizeof(articulated::Drive) + sizeof(articulated::Wrench) +
                          sizeof(std::string)) +
          kVectors * numbers * sizeof(double);
@@ -39,6 +42,18 @@ Tree::Tree(std::pmr::memory_resource* memory, const std::vector<articulated::Lin
   limit_force = held_force = mean = state.v;
   loads.reaction = state.v;
   step_state = sub_state = part_state = state;
+}
+
+const articulated::Whole& Tree::measured() {
+  articulated::forward_kinematics(model, data, state);
+  if (std::exchange(measured_at_, data.standing()) != data.standing()) measured_ = measure_whole(model, data);
+  return measured_;
+}
+
+double Tree::kinetic() {
+  articulated::forward_kinematics(model, data, state);
+  if (std::exchange(kinetic_at_, data.standing()) != data.standing()) kinetic_ = kinetic_energy(model, data);
+  return kinetic_;
 }
 
 Pose Tree::pose(int link) const {

@@ -139,10 +139,19 @@ struct Tree : InMemory {
     for (const TreeLink& link : links) first = std::min(first, link.body);
     return first;
   }
+  /// Mass, centre and momenta; and the energy of motion, J. Links are placed for them.
+  const articulated::Whole& measured();
+  double kinetic();
   void reserve_rows();  // once `loops` and `held` are known
   /// The pose of the body of a link, after forward_kinematics.
   Pose pose(int link) const;
   Vector3 velocity(int link) const;  // of the body's origin, m/s, world
+
+ private:
+  // Sums over the links, and Data::standing() as they were made.
+  articulated::Whole measured_;
+  double kinetic_ = 0;
+  std::uint64_t measured_at_ = 0, kinetic_at_ = 0;
 };
 
 }  // namespace breve
