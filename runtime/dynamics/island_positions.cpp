@@ -210,9 +210,9 @@ double Positions::put_back_once(double h, bool struck, Rates rates) {
     const NearPair& pair = contacts_.pair_of(touch);
     double rate = std::min(0.0, -touch.gap / h);
     if (struck) {
-      const double deeper = std::min(touch.gap, 0.0) - rows_.gap_now(touch);
-      any = any || deeper > kTouchSkin * state_.size_of_pair(pair);
-      rate = deeper / h;
+      const double far = deeper(touch);
+      any = any || far > kTouchSkin * state_.size_of_pair(pair);
+      rate = far / h;
       fastest = std::max(fastest, rate);
     }
     pushes_.push_back({rate, softness(pair), 0});
@@ -347,6 +347,24 @@ bool Positions::hold_off(double h) {
   return true;
 }
 
+/// After the rows moved positions: whether links that a blow throws, and whose way the rows could not change without a
+/// gain, went on into what they struck outside. Half-way through something thin they would come out on its other side.
+bool Positions::went_on() {
+  if (!contacts_.spent() ||
+      std::all_of(state_.trees.begin(), state_.trees.end(), [](const Tree* tree) { return tree->row_share == 1; }))
+    return false;
+  state_.place_links();
+  for (std::size_t i = 0; i < rows_.contacts(); ++i) {
+    const auto& [touch, pair, row, law] = rows_.contact(i);
+    const bool apart = state_.slot_of(pair.a).tree != state_.slot_of(pair.b).tree;
+    if (apart && deeper(touch) > kTouchSkin * state_.size_of_pair(pair)) return true;
+  }
+  return false;
+}
+
+/// m, by which a touch is deeper than it was when the sub-step began; links are placed.
+double Positions::deeper(const Touch& touch) const { return std::min(touch.gap, 0.0) - rows_.gap_now(touch); }
+
 /// Springs pull at the cluster's links, or loops hold them together.
 bool Positions::yields(const Clustered& one) const {
   const auto pulls = [this](const TreeLink& link) {
@@ -368,7 +386,7 @@ bool Positions::sank() {
   for (std::size_t i = 0; i < rows_.contacts(); ++i) {
     const auto& [touch, pair, row, law] = rows_.contact(i);
     if (!(row.impulse[0] > 0) || !(row.ja || row.jb)) continue;
-    if (rows_.gap_now(touch) < std::min(touch.gap, 0.0) - kSunk * state_.size_of_pair(pair)) return true;
+    if (deeper(touch) > kSunk * state_.size_of_pair(pair)) return true;
   }
   return false;
 }

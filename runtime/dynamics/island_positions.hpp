@@ -22,6 +22,7 @@ class Positions {
 
   void push_apart(double h);
   bool hold_off(double h);
+  bool went_on();
   bool sank();
   void raise(double h, double most);
   void put_back(double h, bool struck);
@@ -49,6 +50,7 @@ class Positions {
   void take_back_pushes(double part, double h);
   bool on_spring(int mover) const;
   bool find_struck(double h);
+  double deeper(const Touch& touch) const;
   bool yields(const Clustered& one) const;
   void book_moves(double sign);
   void book_pushed();

@@ -14,6 +14,9 @@ namespace breve::island {
 
 namespace {
 
+/// rad, by which a body may rotate between two looks at what it may touch.
+constexpr double kBetweenLooks = 1;
+
 /// Into how many equal parts of at most `step` seconds `left` goes; rounding is not to make one more.
 double parts_of(double left, double step) {
   constexpr double kTolerance = 1e-9, kMost = 1e9;
@@ -70,6 +73,36 @@ double Step::longest(double left, bool lies) const {
   const bool touching = !lies && (contacts_.any() || state_.has_loops());
   if (touching && state_.accuracy.contact_step > 0) step = std::min(step, state_.accuracy.contact_step);
   return left / parts_of(left, step);
+}
+
+/// rad/s, of a body's spin as far as it moves the surface.
+double Step::rotation_seen(BodyIndex body) const {
+  if (state_.slot_of(body).mover < 0) return 0;
+  const Shape& shape = state_.shape(body);
+  const Vector3 spin = state_.spin_of(body);
+  switch (shape.kind()) {
+    case ShapeKind::Sphere: return 0;
+    case ShapeKind::Cylinder:
+    case ShapeKind::Capsule: {
+      const Vector3 axis = state_.pose_of(body).orientation * Vector3::Unit(shape.round().axis);
+      return (spin - spin.dot(axis) * axis).norm();
+    }
+    default: return spin.norm();
+  }
+}
+
+/// Such a part of a sub-step that bodies which may meet within it rotate by no more than their paths show: an impact is
+/// sought between where they are at its start and at its end, and half a revolution looks like one the other way. A
+/// step that begins with a fast spin has short sub-steps anyway (Watch); an impact may give one in its middle.
+double Step::followed(double part) const {
+  constexpr double kMostParts = 64;
+  double fastest = 0;
+  for (std::size_t i = 0; i < state_.pairs.size(); ++i) {
+    if (contacts_.role(i) != Role::Far && contacts_.role(i) != Role::Leaves) continue;
+    const NearPair& pair = *state_.pairs[i];
+    fastest = std::max({fastest, rotation_seen(pair.a), rotation_seen(pair.b)});
+  }
+  return part / std::clamp(std::ceil(fastest * part / kBetweenLooks), 1.0, kMostParts);
 }
 
 /// Nothing is near and nothing holds: smooth motion is all.
@@ -141,8 +174,9 @@ void Step::fast(double start, double h) {
 void Step::take_fast(double time, double h) {
   sub_step_.look(h, true);
   if (state_.meter.ended()) return;  // what touches was not looked for to the end
-  state_.followed = false;
-  if (const int parts = spring_parts(h); parts > 1)
+  const int springs = spring_parts(h), parts = std::max(springs, rotation_parts(h));
+  state_.followed = springs > 1;
+  if (parts > 1)
     take_parts(time, h, parts);
   else
     take_looked(time, h);
@@ -151,7 +185,6 @@ void Step::take_fast(double time, double h) {
 /// A sub-step of h seconds, of which nothing has been taken yet.
 void Step::take_parts(double time, double h, int parts) {
   const double part = h / parts, gone = gone_;
-  state_.followed = true;
   for (int i = 0; i < parts; ++i) {
     gone_ = gone + i * part;
     if (state_.unaffordable()) return finish(used_up(), time + i * part, h - i * part);
@@ -188,6 +221,27 @@ int Step::spring_parts(double h) const {
   if (!(fastest * h > kFollowed)) return 1;
   const double items = static_cast<double>(state_.free_bodies.size() + state_.pairs.size());
   return static_cast<int>(std::min(std::ceil(fastest * h / kPartPhase), std::clamp(kLooks / items, kMost, kMostOfFew)));
+}
+
+/// Into how many parts a sub-step of h seconds goes in which a link rotates near what it may touch, or a joint would go
+/// far beyond a limit: the rows know the points that are nearest as it begins, and what brings a joint back from far
+/// gives links in flight energy. Bodies without joints that spin have shorter sub-steps anyway (Watch).
+int Step::rotation_parts(double h) const {
+  constexpr double kMost = 8;
+  constexpr double kBeyond = 0.25;  // rad, or length units
+  if (state_.trees.empty() || state_.finished) return 1;
+  double fastest = 0;
+  for (const Touch& touch : contacts_.touches()) {
+    const NearPair& pair = contacts_.pair_of(touch);
+    for (const BodyIndex body : {pair.a, pair.b})
+      if (state_.slot_of(body).tree) fastest = std::max(fastest, rotation_seen(body));
+  }
+  double farthest = 0;
+  for (const Bound& bound : contacts_.bounds())
+    if (!bound.rests && !bound.held && bound.gap + h * bound.rate < -kBeyond * bound.unit)
+      farthest = std::max(farthest, -h * bound.rate / bound.unit);
+  const double parts = std::max(std::ceil(fastest * h / kBetweenLooks), std::ceil(farthest / kBeyond));
+  return static_cast<int>(std::clamp(parts, 1.0, kMost));
 }
 
 /// After a look.
@@ -251,7 +305,7 @@ void Step::located(MechanicsClient* client, double start, double h) {
     if (state_.unaffordable()) return finish(used_up(), start + now, h - now);
     spent_ = met_ >= most || stalls > kMostStalls || state_.squeezed || state_.meter.done() > dear;
     if (!look(start + now, contact_part(h - now, whole))) continue;
-    const double part = longest(h - now, whole);
+    const double part = spent_ ? longest(h - now, whole) : followed(longest(h - now, whole));
     impacts_.note_start();
     sub_step_.open(part);
     sub_step_.advance(start + now, part);

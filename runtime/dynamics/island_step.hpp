@@ -30,12 +30,15 @@ class Step {
   void take_looked(double time, double h);
   bool meets(const NetworkCluster& network) const;
   int spring_parts(double h) const;
+  int rotation_parts(double h) const;
   void located(MechanicsClient* client, double start, double h);
   bool look(double time, double sub);
   Trouble fastest_motion() const;
   Trouble used_up() const;
   void finish(const Trouble& why, double time, double left);
   double longest(double left, bool lies) const;
+  double rotation_seen(BodyIndex body) const;
+  double followed(double part) const;
   double contact_part(double left, bool lies) const;
   bool lies(double h) const;
   int located_impacts() const;

@@ -153,7 +153,7 @@ void SubStep::move_by_rows(double h) {
   books_.note_solved();
   solver_.move_by_impulses(0.5 * h, books_.smooth_stored());
   for (Clustered& one : state_.clusters) one.pending.script_work += work_on_pushed(one);
-  const bool struck = positions_.hold_off(h);
+  const bool struck = positions_.hold_off(h) || positions_.went_on();
   positions_.put_back(h, struck);
   if (!struck && books_.kept() && positions_.sank()) positions_.raise(h, std::max(0.0, books_.taken()));
 }
