@@ -228,8 +228,9 @@ int Step::spring_parts(double h) const {
 /// gives links in flight energy. Bodies without joints that spin have shorter sub-steps anyway (Watch).
 int Step::rotation_parts(double h) const {
   constexpr double kMost = 8;
-  constexpr double kBeyond = 0.25;  // rad, or length units
-  if (state_.trees.empty() || state_.finished) return 1;
+  constexpr double kBeyond = 0.5;  // rad, or length units
+  // Loops that are left to rows are closed by the whole sub-step.
+  if (state_.trees.empty() || state_.has_loops() || state_.finished) return 1;
   double fastest = 0;
   for (const Touch& touch : contacts_.touches()) {
     const NearPair& pair = contacts_.pair_of(touch);
