@@ -395,6 +395,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   double slowest_bounce(const contact::Law& law) const;
 
   // stops.cpp: limits that bounce
+  bool keeps_within_limits(const FlatJoint& joint, double dt) const;
   void set_stops(bool bounce);
   bool find_stop(double dt, bool found, Hit& best) const;
   bool stops_within(const FlatJoint& joint, double dt, double& t) const;

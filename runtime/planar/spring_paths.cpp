@@ -103,6 +103,11 @@ void SpringRows::set_residual(const Part& part) {
   add_pulls(part, 1, scratch_);
   add_scaled(residual_, 1, scratch_);
   for (std::size_t i = 0; i < residual_.size(); ++i) residual_[i] -= node(part.nodes[i]).load;
+  if (part.assemblies.empty()) return;
+  // What joints hold is not an error. They give way a little, which would be seen where the rest is small.
+  mobile(part, residual_, scratch_);
+  for (std::size_t i = 0; i < residual_.size(); ++i)
+    if (node(part.nodes[i]).held) residual_[i] = scratch_[i].cwiseProduct(inertias_[i]);
 }
 
 /// The derivative of the residual, without what makes it indefinite: springs that are compressed and swing out; and the

@@ -399,8 +399,8 @@ void Planar::Core::step_box2d(float dt, int iterations) {
 
 void Planar::Core::step(double dt, bool bounce) {
   start_warm(dt);
-  apply_forces(dt);
   set_stops(bounce);
+  apply_forces(dt);
   resist_rolling(dt);
   kick(dt);
   make_contacts();

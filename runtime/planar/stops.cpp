@@ -26,6 +26,11 @@ bool find_end(const Joint& b, double at, double rate, double bend, bool bounded,
   return true;
 }
 
+template <class Joint>
+bool keeps_within(const Joint& b, double at, double goes) {
+  return at + std::min(goes, 0.0) > double{b.GetLowerLimit()} && at + std::max(goes, 0.0) < double{b.GetUpperLimit()};
+}
+
 bool end_ahead(const FlatJoint& joint, double rate, End& end) {
   const JointDrive& drive = joint.drive;
   if (!joint.used || !joint.b2 || !(drive.limit_restitution > 0) || joint.is.kind == JointKind::Fixed) return false;
@@ -59,6 +64,17 @@ double Planar::Core::slowest_rebound(const FlatJoint& joint) const {
   const double reach =
       joint.is.kind == JointKind::Revolute ? bodies->collision_shape(joint.is.child)->bounding_radius() : settings.unit;
   return std::max({std::abs(joint.bend) * step_length, settings.gravity.norm() * step_length / reach, kLeast});
+}
+
+/// Whether a joint that moves on as it does now reaches neither of its limits within dt.
+bool Planar::Core::keeps_within_limits(const FlatJoint& joint, double dt) const {
+  const double goes = dt * joint_rate(joint);
+  if (joint.is.kind == JointKind::Revolute) {
+    const auto& b = *static_cast<const b2RevoluteJoint*>(joint.b2);
+    return keeps_within(b, b.GetJointAngle(), goes);
+  }
+  const auto& b = *static_cast<const b2PrismaticJoint*>(joint.b2);
+  return keeps_within(b, b.GetJointTranslation(), goes);
 }
 
 /// Limits that are to bounce what comes now are off; `bounce` false: none.
