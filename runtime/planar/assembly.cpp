@@ -94,13 +94,27 @@ bool Planar::Core::Assembly::connects_script(const JointDescription& is) const {
   return false;
 }
 
+/// Whether what touches a body pushed it in this sub-step, or is to be moved out of it.
+bool Planar::Core::Assembly::is_pushed(const FlatBody& flat) {
+  if (flat.touching == 0) return false;
+  for (b2ContactEdge* edge = flat.b2->GetContactList(); edge; edge = edge->next) {
+    if (!edge->contact->IsTouching()) continue;
+    b2WorldManifold where;
+    edge->contact->GetWorldManifold(&where);
+    const b2Manifold& manifold = *edge->contact->GetManifold();
+    for (int k = 0; k < manifold.pointCount; ++k)
+      if (manifold.points[k].normalImpulse > 0 || where.separations[k] < -b2_linearSlop) return true;
+  }
+  return false;
+}
+
 /// Whether all are awake and step, and nothing but joints and forces acted on them.
 bool Planar::Core::Assembly::may_move() {
   if (!planned_) return false;
   for (Link& link : links_) {
     link.flat = core_.find(link.body);
     const FlatBody* flat = link.flat;
-    if (!flat || flat->fixed || flat->set_apart || flat->touching > 0 || !flat->b2->IsAwake()) return false;
+    if (!flat || flat->fixed || flat->set_apart || is_pushed(*flat) || !flat->b2->IsAwake()) return false;
     if (flat->given != b2Vec2(0, 0) || flat->given_spin != 0 || !is_finite(*flat->b2)) return false;
   }
   return std::all_of(joints_.begin(), joints_.end(), [this](const Member& member) {
@@ -187,7 +201,7 @@ Planar::Core::Assembly::Vector Planar::Core::Assembly::gap_of(std::size_t index,
   }
 }
 
-void Planar::Core::Assembly::linearize(std::span<const FlatPose> poses) {
+void Planar::Core::Assembly::linearize(std::span<const FlatPose> poses, double softness) {
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const Member& member = joints_[i];
     const auto [parent, child] = ends_of(i, poses);
@@ -212,7 +226,7 @@ void Planar::Core::Assembly::linearize(std::span<const FlatPose> poses) {
     rates.child(2, 2) = 1;
     rates.parent(2, 2) = -1;
   }
-  system_.factor(mobility_);
+  system_.factor(mobility_, softness);
 }
 
 /// The part of a link's forces that acts before it moves: those of springs in flight are meant for halves.
@@ -279,44 +293,6 @@ bool Planar::Core::Assembly::find_path(double dt) {
   return last * dt < kGood;
 }
 
-/// By how much joints are open at the new pose, the widest; limits count where their joints are at them.
-double Planar::Core::Assembly::find_gaps() {
-  double worst = 0;
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    const Member& member = joints_[i];
-    Vector& gap = rates_[i] = gap_of(i, after_);
-    if (member.locked) {
-      double& travel = gap[member.free_row()];
-      travel = std::min(travel - member.low, 0.0) + std::max(travel - member.high, 0.0);
-    }
-    worst = std::max(worst, gap.cwiseAbs().maxCoeff());
-  }
-  return worst;
-}
-
-/// What joints are open at the new pose is closed there, as Box2D does it: positions move and velocities do not, but
-/// for a rotation of the whole that keeps the angular momentum.
-void Planar::Core::Assembly::close_gaps() {
-  constexpr double kOpen = 1e-5;  // length units or rad
-  constexpr double kMost = 0.1;   // the same: what is moved at once
-  constexpr int kMostRounds = 3;  // of Newton's method
-  if (!(find_gaps() > kOpen)) return;
-  const Common had = common_motion();
-  for (int round = 0; round < kMostRounds && find_gaps() > kOpen; ++round) {
-    for (Vector& gap : rates_) gap = -gap;
-    system_.solve(rates_);
-    std::fill(moves_.begin(), moves_.end(), Vector::Zero());
-    system_.spread(rates_, moves_);
-    double farthest = 0;
-    for (const Vector& move : moves_) farthest = std::max(farthest, move.cwiseAbs().maxCoeff());
-    const double part = farthest > kMost ? kMost / farthest : 1;
-    for (std::size_t i = 0; i < links_.size(); ++i)
-      after_[i] = FlatPose(after_[i].center + part * moves_[i].head<2>(), after_[i].angle + part * moves_[i][2]);
-    linearize(after_);
-  }
-  keep_rotation(had);
-}
-
 /// Impulses at the new pose, after which its joints allow the velocities.
 /// @param ends  the sub-step, where limits are reached
 void Planar::Core::Assembly::allow(double h, bool ends) {
@@ -334,20 +310,26 @@ void Planar::Core::Assembly::allow(double h, bool ends) {
   give_rates();
 }
 
+/// Box2D's body is where the link has come to.
+void Planar::Core::Assembly::put(std::size_t link) {
+  b2Body& b = *links_[link].flat->b2;
+  const FlatPose& at = after_[link];
+  const b2Vec2 center(static_cast<float>(at.center.x()), static_cast<float>(at.center.y()));
+  const auto angle = static_cast<float>(at.angle);
+  if (center != b.GetWorldCenter() || angle != b.GetAngle())
+    b.SetTransform(center - b2Mul(b2Rot(angle), b.GetLocalCenter()), angle);
+}
+
 void Planar::Core::Assembly::keep(double dt) {
   constexpr double kSingle = 1e-7;  // what single precision leaves of a number
   const double unseen = kSingle * dt * double{core_.b2->GetGravity().Length()};
   for (std::size_t i = 0; i < links_.size(); ++i) {
     FlatBody& flat = *links_[i].flat;
     b2Body& b = *flat.b2;
-    const FlatPose& at = after_[i];
-    const b2Vec2 center(static_cast<float>(at.center.x()), static_cast<float>(at.center.y()));
     // What rests stays at rest, but for what single precision makes of the loads.
     for (double& v : velocities_[i])
       if (std::abs(v) < unseen) v = 0;
-    const auto angle = static_cast<float>(at.angle);
-    if (center != b.GetWorldCenter() || angle != b.GetAngle())
-      b.SetTransform(center - b2Mul(b2Rot(angle), b.GetLocalCenter()), angle);
+    put(i);
     const float slow = sleep_time(b);  // a velocity that is set would begin it anew
     b.SetLinearVelocity(b2Vec2(static_cast<float>(velocities_[i].x()), static_cast<float>(velocities_[i].y())));
     b.SetAngularVelocity(static_cast<float>(velocities_[i].z()));
@@ -378,6 +360,7 @@ void Planar::Core::Assembly::keep_impulses(const Member& member) {
 
 /// One of the parts in which what rotates far takes a sub-step. Whether it has a solution.
 bool Planar::Core::Assembly::take(double h, double part, bool last) {
+  constexpr double kLifts = 0.05;  // of the energy of motion: what closing joints may lift the links by
   linearize(before_);
   begin_works(before_);
   add_loads(h, part);
@@ -386,7 +369,7 @@ bool Planar::Core::Assembly::take(double h, double part, bool last) {
   end_works(before_, part);
   work_ += work_along_path(h);
   linearize(after_);
-  close_gaps();
+  work_ += close_gaps(kLifts * kinetic());  // which is paid for by the motion
   begin_works(after_);
   allow(h, last);
   end_works(after_, 0);
@@ -407,7 +390,11 @@ bool Planar::Core::Assembly::take_all(double dt, int parts) {
     joints_[i].rate = rates_[i][joints_[i].free_row()];
     rates_[i][joints_[i].free_row()] = 0;
   }
+  const double had = kinetic();
   give_rates();  // what contacts left, the joints may not allow
+  constexpr double kSeen = 1e-9;  // of it: less is round-off of single precision
+  torn_ = had - kinetic();
+  if (!(torn_ > kSeen * had)) torn_ = 0;
   for (Member& member : joints_) {
     member.impulse.setZero();
     member.work = 0;
@@ -449,6 +436,7 @@ void Planar::Core::Assembly::move(double dt) {
     }
     const double u = core_.settings.unit;
     core_.ledger.limit_loss += lost_ * u * u;
+    core_.ledger.contact_loss += torn_ * u * u;
     return keep(dt);
   }
 }
@@ -465,6 +453,11 @@ void Planar::Core::move_assemblies(double dt) {
   if (members_changed) return;  // a handler has changed them in this step
   if (!articulations_known) number_joints();
   for (const std::unique_ptr<Assembly>& one : articulations) one->move(dt);
+}
+
+void Planar::Core::close_joints(double dt) {
+  if (members_changed || !articulations_known) return;
+  for (const std::unique_ptr<Assembly>& one : articulations) one->close(dt);
 }
 
 void Planar::Core::take_back_gains(double dt) {

@@ -1,7 +1,7 @@
 // A sub-step of bodies that joints connect and that touch nothing, solved as a whole and in double precision.
 #pragma once
 
-#include "runtime/planar/core.hpp"
+#include "runtime/planar/island.hpp"
 #include "runtime/planar/joint_system.hpp"
 
 namespace breve {
@@ -26,6 +26,8 @@ class Planar::Core::Assembly {
   Assembly(Core& core, BodyIndex first);
   /// Replaces what Box2D has made of a sub-step. Does nothing where something touches, or no solution is found.
   void move(double dt);
+  /// Closes joints that are open, where Box2D has moved the links.
+  void close(double dt);
   /// Energy that contacts and joints have given it is taken from its motion, where Box2D has moved it.
   void take_back(double dt);
 
@@ -67,6 +69,7 @@ class Planar::Core::Assembly {
   using Numbers = std::pmr::vector<std::pair<BodyIndex, int>>;  // of bodies in the assembly, sorted
   static int number_of(const Numbers& numbers, BodyIndex body);
   void collect_joints(const Numbers& numbers);
+  static bool is_pushed(const FlatBody& flat);
   bool may_move();
   bool connects_script(const JointDescription& is) const;
   void load(double dt);
@@ -78,7 +81,7 @@ class Planar::Core::Assembly {
   double travel_of(std::size_t index, std::span<const FlatPose> poses) const;
   std::pair<FlatPose, FlatPose> ends_of(std::size_t index, std::span<const FlatPose> poses) const;
   std::pair<Vector, Vector> axis_rows(std::size_t index, std::span<const FlatPose> poses) const;
-  void linearize(std::span<const FlatPose> poses);
+  void linearize(std::span<const FlatPose> poses, double softness = JointSystem::kRegular);
   static double early(const Link& link);
   double early(std::size_t index) const;
   void push(std::size_t index, double impulse, std::span<const FlatPose> poses);
@@ -87,14 +90,20 @@ class Planar::Core::Assembly {
   void advance_poses(double h);
   bool find_path(double h);
   void give_rates();
-  double find_gaps();
-  void close_gaps();
   void allow(double h, bool ends);
   bool take(double h, double part, bool last);
   bool take_all(double dt, int parts);
   static double motor_share(const Member& member);
   bool release();
   bool catch_up(double dt);
+
+  // assembly_gaps.cpp
+  double find_gaps();
+  double close_gaps(double most);
+  double work_of_moves() const;
+  bool is_open(const FlatJoint& joint) const;
+  double energy_about() const;
+  void list_touching(std::pmr::vector<Island::Apart>& all) const;
 
   // assembly_energy.cpp
   struct Common {
@@ -105,11 +114,12 @@ class Planar::Core::Assembly {
   bool touches_only_fixed() const;
   bool pulled() const;
   double least_move() const;
-  bool driven(double dt) const;
+  bool stops(double dt) const;
   double own_rate(std::size_t index, std::span<const FlatPose> poses) const;
   void begin_works(std::span<const FlatPose> poses);
   void end_works(std::span<const FlatPose> poses, double part);
   double drive_work(double dt);
+  double spring_work() const;
   void settle_energy(double began, double dt);
   double kinetic() const;
   double work_along_path(double h) const;
@@ -120,6 +130,7 @@ class Planar::Core::Assembly {
   double restore_energy(double energy);
 
   // assembly.cpp
+  void put(std::size_t link);
   void keep(double dt);
   void keep_impulses(const Member& member);
 
@@ -131,6 +142,7 @@ class Planar::Core::Assembly {
   std::pmr::vector<FlatPose> before_, after_;
   double work_ = 0;     // of gravity and forces in the sub-step, in Box2D's units
   double lost_ = 0;     // at limits, the same
+  double torn_ = 0;     // in what contacts left and joints do not allow, the same
   double missing_ = 0;  // that could not be restored, the same
   std::pmr::vector<Vector> mobility_, velocities_, moves_, forces_, rates_;
 };

@@ -23,9 +23,11 @@ void Planar::Core::Assembly::note_drive(Member& member, double dt) {
   const WarmJoint warm = core_.warm_of(joint);
   const auto note = [&](const auto* b, double strength) {
     const bool holds = b->IsMotorEnabled() && std::abs(double{warm.motor}) < kFull * strength * dt;
-    if (b->IsLimitEnabled()) {
+    if (b->IsLimitEnabled() || joint.loose) {
       member.least = double{b->GetLowerLimit()};
       member.most = double{b->GetUpperLimit()};
+      // Where it is to bounce it is held as soon as it has come there; its motor may drive it back to the other end.
+      if (joint.loose) (joint.rate < 0 ? member.least : member.most) = std::copysign(JointDrive::kNoLimit, joint.rate);
       if (warm.lower > 0) member.low = member.least;
       if (warm.upper > 0) member.high = member.most;
     }

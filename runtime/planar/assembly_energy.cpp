@@ -24,10 +24,10 @@ double Planar::Core::Assembly::least_move() const {
   return kStill + kSingle * farthest;
 }
 
-/// Motors act in it, or limits that stop what moves.
-bool Planar::Core::Assembly::driven(double dt) const {
+/// Limits act in it that stop what moves.
+bool Planar::Core::Assembly::stops(double dt) const {
   return std::any_of(joints_.begin(), joints_.end(), [dt, still = least_move()](const Member& member) {
-    return member.load != 0 || (member.locked && (member.strength > 0 || !member.rests(dt, still)));
+    return member.locked && member.limited() && !member.rests(dt, still);
   });
 }
 
@@ -62,31 +62,41 @@ void Planar::Core::Assembly::end_works(std::span<const FlatPose> poses, double p
   }
 }
 
-/// The work of all motors. A motor that presses on a limit does it with what it gives, a limit does none.
+/// The work of all motors. A motor that presses on a limit does it with what it gives, a limit does none; nor does
+/// either do work where a joint is put back that was beyond its limit.
 double Planar::Core::Assembly::drive_work(double dt) {
+  const double still = least_move();
   double sum = 0;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     Member& member = joints_[i];
-    if (member.strength > 0 && member.limited() && member.speed != member.target)
-      member.work = motor_share(member) * (travel_of(i, after_) - member.travel) / dt;
+    if (member.strength > 0 && member.limited() && member.speed != member.target) {
+      const bool beyond = member.travel < member.low - still || member.travel > member.high + still;
+      const double rate = beyond ? member.target : (travel_of(i, after_) - member.travel) / dt;
+      member.work = motor_share(member) * rate;
+    }
     sum += member.work;
   }
   return sum;
 }
 
-/// The works of gravity and of constant forces are known exactly: energy that differs from them is an error. Motors and
-/// limits may take more, so energy only goes back if nothing of this kind acts. The works of springs are not exact.
+/// The work of the springs of prismatic joints; that of all others is among that of forces.
+double Planar::Core::Assembly::spring_work() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+    if (joints_[i].spring != 0) sum += joints_[i].spring * (travel_of(i, after_) - joints_[i].travel);
+  return sum;
+}
+
+/// The works of gravity, of constant forces and of motors are known: energy that differs from them is an error. Limits
+/// may take more, so energy only goes back where none of them stops anything; one at which a joint rests takes nothing.
+/// The works of springs are not exact.
 /// @param began  the energy of motion as the sub-step of dt seconds began, in Box2D's units
 void Planar::Core::Assembly::settle_energy(double began, double dt) {
   lost_ = missing_ = 0;
-  if (pulled()) return;
-  const bool drives = driven(dt);
-  const double energy = began + work_ + drive_work(dt);
-  if (!drives || kinetic() > energy) missing_ = restore_energy(energy);
-  // One at which a joint rests takes nothing: that would be round-off.
-  const bool limits = std::any_of(joints_.begin(), joints_.end(), [dt, still = least_move()](const Member& member) {
-    return member.locked && member.limited() && !member.rests(dt, still);
-  });
+  const bool limits = stops(dt), springs = pulled();
+  if (springs && !limits) return;
+  const double energy = began + work_ + drive_work(dt) + spring_work();
+  if (!springs && (!limits || kinetic() > energy)) missing_ = restore_energy(energy);
   if (limits) lost_ = std::max(energy - kinetic(), 0.0);
 }
 

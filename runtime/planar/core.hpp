@@ -342,6 +342,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   bool articulations_known = false;                           // no body or joint came or went since
   void number_joints();
   void move_assemblies(double dt);
+  void close_joints(double dt);
   void take_back_gains(double dt);
 
   // landings.cpp: what Box2D's sweeps solve badly
@@ -364,6 +365,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   };
   bool handlers() const;
   bool few() const;
+  static bool swings_back(const FlatBody& a, const FlatBody& b, double restitution);
   bool find_hit(double dt, const Sought& sought, Hit& best);
   std::pmr::vector<BodyIndex> meeting(double dt);
   template <class F>

@@ -281,15 +281,20 @@ void Planar::Core::Island::solve_rows(bool impact) {
     scalars_[i].hi = idle ? 0 : drive.hi;
     scalars_[i].impulse = 0;
   }
+  constexpr double kUnseen = 1e-3;  // of the speed that gravity gives in a sub-step
+  constexpr double kLeast = 1e-6;   // m/s, without gravity
+  solve(std::max(kUnseen * core_.settings.gravity.norm() * dt_, kLeast) / core_.settings.unit);
+}
+
+/// @param tolerance  of the rows, in Box2D's units
+void Planar::Core::Island::solve(double tolerance) {
   contact::SolveSettings settings;
   constexpr std::size_t kFewest = 8, kMost = 200, kVisits = 8192;  // sweeps; rows that they visit
   const std::size_t rows = rows_.size() + scalars_.size();
   settings.iterations = static_cast<int>(std::clamp(kVisits / std::max<std::size_t>(rows, 1), kFewest, kMost));
   settings.direct = true;
   settings.direct_share = 3;
-  constexpr double kUnseen = 1e-3;  // of the speed that gravity gives in a sub-step
-  constexpr double kLeast = 1e-6;   // m/s, without gravity
-  settings.tolerance = std::max(kUnseen * core_.settings.gravity.norm() * dt_, kLeast) / core_.settings.unit;
+  settings.tolerance = tolerance;
   // An exact solution that is not found soon is not worth a frame's time: no energy comes from one that is not exact.
   constexpr std::uint64_t kUnits = 1500, kUnitsPerRow = 100;
   Meter meter;

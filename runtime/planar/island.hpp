@@ -19,6 +19,13 @@ class Planar::Core::Island {
   /// Velocities and impulses become those of an impact, and of the forces of the sub-step after it. Nothing where
   /// joints connect more than can answer as a whole.
   void solve();
+  /// A contact, and how far apart its points were before its bodies were moved, length units.
+  struct Apart {
+    b2Contact* contact;
+    float separations[b2_maxManifoldPoints];
+  };
+  /// Moves bodies so that none of their contacts overlaps deeper than it did; joints stay as open as they are.
+  void keep_apart(std::span<const Apart> before);
 
  private:
   template <class T>
@@ -53,11 +60,13 @@ class Planar::Core::Island {
   void add_drive_row(const Drive& drive);
   void add_forces();
   void solve_rows(bool impact);
+  void solve(double tolerance);
   Response::Vector forces_on(const Part& part) const;
   void book_drivers(double sign);
   void write_bodies();
   void write_contacts();
   void write_joints();
+  void aim_apart(std::span<const Apart> before);
 
   Core& core_;
   double dt_;

@@ -102,7 +102,7 @@ void JointSystem::plan_updates() {
   }
 }
 
-void JointSystem::factor(std::span<const Vector> mobility) {
+void JointSystem::factor(std::span<const Vector> mobility, double softness) {
   for (std::size_t i = 0; i < ends_.size(); ++i) {
     for (const auto& [body, rates, spread] : {std::tuple{ends_[i].parent, &rates_[i].parent, &spreads_[i].parent},
                                               std::tuple{ends_[i].child, &rates_[i].child, &spreads_[i].child}})
@@ -115,10 +115,8 @@ void JointSystem::factor(std::span<const Vector> mobility) {
     const Block& spread = one.of_child_first ? spreads_[one.first].child : spreads_[one.first].parent;
     (one.first == one.second ? diagonal_[one.first] : below_[one.block]).noalias() += rates * spread;
   }
-  // Loops may hold some things twice: a little softness keeps the matrix regular.
-  constexpr double kSoft = 1e-10;
   for (Block& block : diagonal_)
-    for (int i = 0; i < 3; ++i) block(i, i) = block(i, i) > 0 ? block(i, i) * (1 + kSoft) : 1;
+    for (int i = 0; i < 3; ++i) block(i, i) = block(i, i) > 0 ? block(i, i) * (1 + softness) : 1;
   eliminate();
 }
 

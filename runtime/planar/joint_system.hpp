@@ -25,6 +25,9 @@ class JointSystem {
     Block parent, child;
   };
 
+  /// Loops may hold some things twice: a little softness keeps the matrix regular.
+  static constexpr double kRegular = 1e-10;
+
   explicit JointSystem(std::pmr::memory_resource* memory);
   /// @param ends  in the order of elimination: best from the leaves of a tree to its root
   /// Returns false if factoring would cost too much.
@@ -35,7 +38,8 @@ class JointSystem {
   Rates& rates(std::size_t joint) { return rates_[joint]; }
 
   /// @param mobility  by body: inverse mass, inverse mass, inverse inertia
-  void factor(std::span<const Vector> mobility);
+  /// @param softness  of each row, relative to its own response
+  void factor(std::span<const Vector> mobility, double softness = kRegular);
   /// Impulses, by joint, that change its rates by these.
   void solve(std::span<Vector> rates) const;
   /// The rates of a joint at these velocities of the bodies.

@@ -409,6 +409,7 @@ void Planar::Core::step(double dt, bool bounce) {
   step_box2d(static_cast<float>(dt), iterations);
   move_assemblies(dt);
   settle_landings(dt);
+  close_joints(dt);
   take_back_gains(dt);
   end_ledger(dt);
   constexpr double kTooShort = 0.1;  // of a sub-step: single precision tells nothing of what changed in it

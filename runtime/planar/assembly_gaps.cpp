@@ -1,0 +1,155 @@
+// Joints that are open are closed where their links have come to, as Box2D does it: positions move, velocities do not.
+// Where links touch something Box2D closes a part of each gap in a sub-step, joint by joint: joints would stand open
+// where links move far along tangents, or heavy ones hang on light ones. So what it leaves is closed all at once.
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/planar/assembly.hpp"
+#include "runtime/planar/island.hpp"
+
+namespace breve {
+
+/// By how much joints are open at the new pose, the widest; limits count where their joints are at them.
+double Planar::Core::Assembly::find_gaps() {
+  double worst = 0;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const Member& member = joints_[i];
+    Vector& gap = rates_[i] = gap_of(i, after_);
+    if (member.locked) {
+      double& travel = gap[member.free_row()];
+      travel = std::min(travel - member.low, 0.0) + std::max(travel - member.high, 0.0);
+    }
+    worst = std::max(worst, gap.cwiseAbs().maxCoeff());
+  }
+  return worst;
+}
+
+/// What joints are open at the new pose is closed there, as Box2D does it: positions move and velocities do not, but
+/// for a rotation of the whole that keeps the angular momentum.
+/// @param most  the energy by which this may lift the links, in Box2D's units
+/// @return      the work of gravity along the way that they are moved
+double Planar::Core::Assembly::close_gaps(double most) {
+  constexpr double kOpen = 1e-5;  // length units or rad
+  constexpr double kMost = 0.1;   // the same: what is moved at once
+  constexpr int kMostRounds = 6;  // of Newton's method
+  // A straight chain between two points that are too far apart, or too near, would be moved far across for next to
+  // nothing.
+  constexpr double kSoft = 1e-3;
+  if (!(find_gaps() > kOpen)) return 0;
+  const Common had = common_motion();
+  double work = 0;
+  for (int round = 0; round < kMostRounds && find_gaps() > kOpen; ++round) {
+    linearize(after_, kSoft);
+    for (Vector& gap : rates_) gap = -gap;
+    system_.solve(rates_);
+    std::fill(moves_.begin(), moves_.end(), Vector::Zero());
+    system_.spread(rates_, moves_);
+    double farthest = 0;
+    for (const Vector& move : moves_) farthest = std::max(farthest, move.cwiseAbs().maxCoeff());
+    double part = farthest > kMost ? kMost / farthest : 1;
+    const double falls = work_of_moves(), left = most + work;
+    if (-part * falls > left) part = std::max(left, 0.0) / -falls;
+    work += part * falls;
+    for (std::size_t i = 0; i < links_.size(); ++i)
+      after_[i] = FlatPose(after_[i].center + part * moves_[i].head<2>(), after_[i].angle + part * moves_[i][2]);
+  }
+  linearize(after_);
+  keep_rotation(had);
+  return work;
+}
+
+/// The work of gravity along the moves of the links, in Box2D's units.
+double Planar::Core::Assembly::work_of_moves() const {
+  const Vector2 fall = vector_of(core_.b2->GetGravity());
+  double sum = 0;
+  for (std::size_t i = 0; i < links_.size(); ++i) sum += fall.dot(moves_[i].head<2>()) / mobility_[i][0];
+  return sum;
+}
+
+/// Whether a joint is further open than Box2D leaves one that it has closed.
+bool Planar::Core::Assembly::is_open(const FlatJoint& joint) const {
+  const b2Vec2 a = joint.b2->GetAnchorA(), b = joint.b2->GetAnchorB();
+  Vector2 way = vector_of(b) - vector_of(a);
+  if (joint.is.kind == JointKind::Prismatic) {
+    const Vector2 axis = core_.axis_of(joint);
+    way -= way.dot(axis) * axis;
+  }
+  return way.squaredNorm() > double{b2_linearSlop} * double{b2_linearSlop};
+}
+
+void Planar::Core::Assembly::list_touching(std::pmr::vector<Island::Apart>& all) const {
+  for (const Link& link : links_)
+    for (b2ContactEdge* edge = link.flat->b2->GetContactList(); edge; edge = edge->next) {
+      if (!edge->contact->IsTouching() || edge->contact->GetManifold()->pointCount == 0) continue;
+      b2WorldManifold where;
+      edge->contact->GetWorldManifold(&where);
+      all.push_back({edge->contact, {where.separations[0], where.separations[1]}});
+    }
+}
+
+namespace {
+
+/// Whether a contact overlaps deeper than it did, and than what rests does.
+bool is_deeper(const Planar::Core::Island::Apart& before) {
+  constexpr float kSeen = 0.1F * b2_linearSlop;
+  b2WorldManifold where;
+  before.contact->GetWorldManifold(&where);
+  for (int k = 0; k < before.contact->GetManifold()->pointCount; ++k)
+    if (where.separations[k] < std::min(before.separations[k], -b2_linearSlop) - kSeen) return true;
+  return false;
+}
+
+}  // namespace
+
+/// The energy of motion with which its links, and what touches them, began the sub-step, in Box2D's units.
+double Planar::Core::Assembly::energy_about() const {
+  const auto energy = [u = core_.settings.unit](const FlatBody& flat) {
+    const double v = vector_of(flat.before).squaredNorm(), w = double{flat.before_spin} * double{flat.before_spin};
+    return flat.fixed ? 0 : (flat.mass.mass * v + flat.mass.inertia(2, 2) / (u * u) * w) / 2;
+  };
+  double sum = 0;
+  for (const Link& link : links_) {
+    sum += energy(*link.flat);
+    for (b2ContactEdge* edge = link.flat->b2->GetContactList(); edge; edge = edge->next)
+      if (edge->contact->IsTouching() && core_.of(edge->other).assembly != link.flat->assembly)
+        sum += energy(core_.of(edge->other));
+  }
+  return sum;
+}
+
+void Planar::Core::Assembly::close(double dt) {
+  constexpr std::uint64_t kWork = 20;  // for each joint
+  constexpr double kLifts = 0.01;      // of the energy of motion: what this may lift the links by
+  if (!planned_ || core_.finishing) return;
+  for (Link& link : links_) {
+    link.flat = core_.find(link.body);
+    const FlatBody* flat = link.flat;
+    if (!flat || flat->fixed || flat->set_apart || flat->solved || !flat->b2->IsAwake() || !is_finite(*flat->b2))
+      return;
+  }
+  bool any = false;
+  for (const Member& member : joints_) {
+    const FlatJoint& joint = core_.joints[member.joint];
+    if (!joint.used || joint.serial != member.serial || !joint.b2) return;
+    any = any || is_open(joint);
+  }
+  if (!any) return;
+  core_.counters.work += kWork * joints_.size();
+  load(dt);
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const b2Body& b = *links_[i].flat->b2;
+    after_[i] = FlatPose(vector_of(b.GetWorldCenter()), double{b.GetAngle()});
+    velocities_[i].setZero();
+  }
+  std::pmr::vector<Island::Apart> touching(core_.memory);
+  list_touching(touching);
+  close_gaps(kLifts * energy_about());
+  for (std::size_t i = 0; i < links_.size(); ++i) put(i);
+  if (std::none_of(touching.begin(), touching.end(), is_deeper)) return;
+  for (FlatBody& flat : core_.slots) flat.gathered = false;
+  Island island(core_, dt);
+  island.gather(*links_.front().flat);
+  island.keep_apart(touching);
+}
+
+}  // namespace breve

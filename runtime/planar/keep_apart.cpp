@@ -1,0 +1,45 @@
+// Overlaps of an island: what closing joints has moved into something else is moved out of it, together with all that
+// it touches. Joints have no rows here either, as what they connect moves as a whole.
+#include <algorithm>
+
+#include "runtime/planar/island.hpp"
+
+namespace breve {
+
+/// What each contact is to gain at least, as the bias of its rows.
+void Planar::Core::Island::aim_apart(std::span<const Apart> before) {
+  constexpr double kRests = -double{b2_linearSlop};  // an overlap that Box2D leaves
+  std::size_t next = 0;
+  for (b2Contact* contact : contacts_) {
+    b2WorldManifold where;
+    contact->GetWorldManifold(&where);
+    const auto known =
+        std::find_if(before.begin(), before.end(), [contact](const Apart& one) { return one.contact == contact; });
+    for (int k = 0; k < contact->GetManifold()->pointCount; ++k) {
+      contact::Row& row = rows_[next++];
+      const double now = double{where.separations[k]};
+      row.bias = std::min(known == before.end() ? now : double{known->separations[k]}, kRests) - now;
+      row.static_friction = row.dynamic_friction = 0;
+    }
+  }
+}
+
+void Planar::Core::Island::keep_apart(std::span<const Apart> before) {
+  constexpr double kExact = 1e-2 * double{b2_linearSlop};
+  if (!make_parts()) return;
+  make_contact_rows();
+  aim_apart(before);
+  for (const contact::Mover& mover : movers_) std::fill_n(mover.v, mover.size, 0.0);
+  solve(kExact);
+  for (FlatBody* flat : bodies_) {
+    const Part& part = part_of(*flat);
+    const auto at = part.response ? static_cast<std::size_t>(part.response->index_of(*flat)) : 0;
+    b2Body& b = *flat->b2;
+    const b2Vec2 move(static_cast<float>(part.v[at]), static_cast<float>(part.v[at + 1]));
+    const float angle = b.GetAngle() + static_cast<float>(part.response ? part.v[at + 2] : part.v[5]);
+    if (move == b2Vec2(0, 0) && angle == b.GetAngle()) continue;
+    b.SetTransform(b.GetWorldCenter() + move - b2Mul(b2Rot(angle), b.GetLocalCenter()), angle);
+  }
+}
+
+}  // namespace breve
