@@ -141,7 +141,15 @@ bool Planar::Core::handlers() const { return client->locates() && client->any_ha
 /// impacts that nobody waits for are met late.
 bool Planar::Core::few() const {
   constexpr int kShare = 256;
-  return settings.accuracy.locate_impacts && awake > 0 && located < kShare / awake;
+  if (!settings.accuracy.locate_impacts && joints.empty()) return false;
+  return awake > 0 && located < kShare / awake;
+}
+
+/// Whether the moment of a rebound is looked for on every rung: what joints hold swings back from where it was met, and
+/// an impact that keeps most of the energy would give or take some where it comes late.
+bool Planar::Core::swings_back(const FlatBody& a, const FlatBody& b, double restitution) {
+  constexpr double kMost = 0.5;  // of the energy
+  return (a.jointed || b.jointed) && restitution * restitution > kMost;
 }
 
 /// f(a, child of a, b, child of b, whether somebody waits for it) for pairs of shapes that may touch within dt.
@@ -155,7 +163,9 @@ void Planar::Core::each_approach(double dt, const Sought& sought, const F& f) {
     const float known = contact->GetRestitution();
     const bool handled = sought.handled && known >= 2, bounces = sought.bounces && std::fmod(known, 2.0F) > 0;
     if (!handled && !bounces) continue;
-    if (!handled && !approach_fast(of(a->GetBody()), of(b->GetBody()), dt)) continue;
+    const FlatBody &x = of(a->GetBody()), &y = of(b->GetBody());
+    const bool sought_now = settings.accuracy.locate_impacts || swings_back(x, y, std::fmod(double{known}, 2.0));
+    if (!handled && !(sought_now && approach_fast(x, y, dt))) continue;
     f(a, contact->GetChildIndexA(), b, contact->GetChildIndexB(), handled);
   }
 }
