@@ -99,6 +99,26 @@ double Balance::close(double& turnover) {
   return residual;
 }
 
+namespace {
+
+void settle_ledger(const Energy& start, Energy& now) {
+  const double gave = losses(start, now) + now.drag_loss - start.drag_loss;
+  const double neither = std::clamp(start.residual - now.residual, 0.0, std::max(0.0, gave));
+  now.contact_loss += neither;
+  now.residual += neither;
+}
+
+}  // namespace
+
+void Balance::settle() {
+  settle_ledger(start_.ledger, state_.result.ledger);
+  for (const Clustered& one : state_.clusters) {
+    if (!one.alone()) continue;
+    Tree& tree = *state_.core.trees[one.entry->trees.front()];
+    settle_ledger(tree.step_ledger, tree.ledger);
+  }
+}
+
 /// What an account lost is absurd, however slowly all that may move moved.
 /// @param most  J, that moved and worked
 bool Balance::goes_astray(double lost, double most) const {

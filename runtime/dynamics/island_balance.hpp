@@ -24,13 +24,15 @@ class Balance {
   /// @param turnover  set to the energy, J, of which the residual is to be a small part
   /// @return          the residual, J
   double close(double& turnover);
+  /// When the step is over: contacts and limits give nothing, so what they are booked to have given, and what was lost
+  /// without an explanation, are one.
+  void settle();
   /// After close(): by how much the energy rose beyond works, whatever losses the ledger has besides, J.
   double risen() const { return risen_; }
   /// After close(): the energy of motion as the step began, and what motors and scripts gave or took since, J.
   double supplied() const { return opened_.kinetic + std::abs(works_); }
   /// After close(): one account lost far more than there was, and another gave it back.
   bool absurd() const { return absurd_; }
-  const Energy& start_ledger() const { return start_.ledger; }
 
  private:
   struct ResultStart {

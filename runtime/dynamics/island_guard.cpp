@@ -78,7 +78,9 @@ void Guard::step(MechanicsClient* client, double start, double h) {
   }
   if (attempt > 0 || state_.finished || followed.step != asked.step) state_.end_use(asked);
   if (trouble.found) give_in(trouble, undone, start, h);
-  if (!handlers_.dissolved()) credit_.keep();
+  if (handlers_.dissolved()) return;
+  credit_.keep();
+  balance_.settle();
 }
 
 /// How often a step is refined. What a script moves makes overlaps that no sub-step mends: one try tells.
@@ -130,13 +132,7 @@ void Guard::undo_rise_of_free_bodies(Rung rung) {
   const double most = wound ? common.inner : kFew * common.inner;
   const double taken = common.inner > kFlies * risen ? risen : std::min(risen, most);
   momentum_.slow_free_bodies(common, taken);
-  // What contacts are booked to have given, they get back.
-  Energy& ledger = state_.result.ledger;
-  const Energy& start = balance_.start_ledger();
-  const double gave = losses(start, ledger) + ledger.drag_loss - start.drag_loss;
-  const double repaid = state_.networks.empty() ? 0 : std::clamp(gave, 0.0, taken);
-  ledger.contact_loss += repaid;
-  ledger.residual -= taken - repaid;
+  state_.result.ledger.residual -= taken;
 }
 
 /// A step of articulated bodies whose energy does not add up is taken again in 2, 4, 8, ... parts: what rotates far in
@@ -270,26 +266,19 @@ void Guard::forget_forces() {
     }
 }
 
-/// Takes velocities, and writes down that their energy is gone: first as what contacts and limits gave in the step.
+/// Takes velocities, and writes down that their energy is gone.
 void Guard::put_to_rest(Momenta momenta, double h) {
   state_.booked = false;
-  const auto take = [](Energy& ledger, const Energy& start, double lost) {
-    const double rows = losses(start, ledger) + ledger.drag_loss - start.drag_loss;
-    const double repaid = std::clamp(rows, 0.0, std::max(lost, 0.0));
-    ledger.contact_loss += repaid;
-    ledger.residual -= lost - repaid;
-  };
   for (Free& one : state_.loose_bodies()) {
     state_.result.ledger.residual -= one.now.kinetic();
     one.now.velocity = one.now.spin = Vector3::Zero();
   }
   for (Clustered& one : state_.clusters) {
     const double lost = momentum_.stop(one, momenta, h);
-    take(state_.result.ledger, balance_.start_ledger(), lost);
-    if (!one.alone()) continue;
-    Tree& tree = *state_.core.trees[one.entry->trees.front()];
-    take(tree.ledger, tree.step_ledger, lost);
+    state_.result.ledger.residual -= lost;
+    if (one.alone()) state_.core.trees[one.entry->trees.front()]->ledger.residual -= lost;
   }
+  balance_.settle();
 }
 
 }  // namespace breve::island
