@@ -43,8 +43,10 @@ class StageForces {
 class Cluster final : public articulated::System, public InMemory {
  public:
   /// `trees` outlive the cluster. It takes its state from them and gives it back.
-  /// @param unit  the world's length unit, m: errors of lengths are measured by it
-  Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees, const Accuracy& accuracy, double unit);
+  /// @param unit   the world's length unit, m: errors of lengths are measured by it
+  /// @param asked  force methods push its trees: see gain()
+  Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees, const Accuracy& accuracy, double unit,
+          bool asked);
 
   std::span<Tree* const> trees() const { return trees_; }
   const Accuracy& accuracy() const { return accuracy_; }
@@ -70,6 +72,15 @@ class Cluster final : public articulated::System, public InMemory {
   double script_work() const { return works_[1]; }    // J, of forces on joints and bodies
   double drag_loss() const { return works_[2]; }      // J
   double reaction_work() const { return works_[3]; }  // J, of the trees' Loads::reaction
+  /// Trees with joints that nothing but forces on their links holds, if force methods push them: what these forces gave
+  /// each of them in the last step, integrated by the same stages.
+  struct Gain {
+    Tree* tree;
+    Vector3 impulse = Vector3::Zero();  // N*s
+    Vector3 way = Vector3::Zero();      // m, of the centre of mass
+    Vector3 spin = Vector3::Zero();     // N*m*s, about the centre of mass
+  };
+  std::span<const Gain> gains() const { return gains_; }
   double next_step() const { return at_.step; }
   void set_next_step(double step) { at_.step = step; }
   /// How many times the tolerance step control may err by, until set anew.
@@ -79,7 +90,7 @@ class Cluster final : public articulated::System, public InMemory {
 
   // --- System
   int positions() const override { return nq_; }
-  int velocities() const override { return nv_ + kWorks + static_cast<int>(motors_.size()); }
+  int velocities() const override { return gains_at() + kGain * static_cast<int>(gains_.size()); }
   articulated::Kind kind(int velocity) const override { return kinds_[static_cast<std::size_t>(velocity)]; }
   void acceleration(double t, const articulated::Vector& q, const articulated::Vector& v, double step,
                     articulated::Vector& a) override;
@@ -91,7 +102,8 @@ class Cluster final : public articulated::System, public InMemory {
   }
 
  private:
-  static constexpr int kWorks = 4;
+  static constexpr int kWorks = 4, kGain = 9;
+  int gains_at() const { return nv_ + kWorks + static_cast<int>(motors_.size()); }
   /// A number of v that a motor drives: its place in the whole vector, whose tree, and its place there.
   struct Motor {
     int place;
@@ -106,6 +118,8 @@ class Cluster final : public articulated::System, public InMemory {
   void add_reaction(const Tree& tree, const double* v, const double* a, Powers& powers) const;
   void accelerate_trees(double t, const articulated::Vector& q, const articulated::Vector& v, double step,
                         articulated::Vector& a, Powers& powers);
+  void add_gains(const articulated::Vector& v, articulated::Vector& a) const;
+  void take_gains(const articulated::Vector& v);
   void make_integrators();
   bool semi_implicit() const { return accuracy_.scheme == articulated::Scheme::SemiImplicitEuler && !finer_now_; }
   void read_mean();
@@ -126,6 +140,7 @@ class Cluster final : public articulated::System, public InMemory {
   std::pmr::vector<articulated::Kind> kinds_;
   std::pmr::vector<Motor> motors_;  // their impulses are further coordinates, after the works
   articulated::Vector torques_;     // (nv_) of motors, at the last stage
+  std::pmr::vector<Gain> gains_;    // per kg these are further coordinates, after the motors' impulses
   std::array<double, kWorks> works_{};
   articulated::Instant at_;
   double current_step_ = 0;

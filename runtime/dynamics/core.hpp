@@ -72,6 +72,8 @@ struct ClusterEntry : InMemory {
   ~ClusterEntry();
   std::pmr::vector<std::uint32_t> trees;  // in their order
   std::pmr::vector<SpringIndex> springs;  // in the order of their indices
+  bool asked = false;                     // some link has a force method
+  std::pmr::vector<std::size_t> wholes;   // then: where those that springs connect end among the trees
   std::unique_ptr<Cluster> system;
   std::unique_ptr<SpringNetwork>
       network;  // if they are bodies without joints, and more than one or connected to something

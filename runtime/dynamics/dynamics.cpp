@@ -119,6 +119,7 @@ void Dynamics::set_force_method(BodyIndex body, bool on) {
   BodyEntry& known = c.entry(body);
   if (known.force_method == on) return;
   known.force_method = on;
+  c.clusters_changed = true;
   if (known.tree == kNone)
     c.graph_changed = c.graph_changed || on;
   else if (!c.needs_tree(body))

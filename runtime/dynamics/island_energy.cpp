@@ -7,6 +7,7 @@
 #include "runtime/articulated/energy.hpp"
 #include "runtime/articulated/joints.hpp"
 #include "runtime/articulated/kinematics.hpp"
+#include "runtime/dynamics/common_motion.hpp"
 #include "runtime/dynamics/network_motion.hpp"
 #include "runtime/dynamics/spring_network.hpp"
 
@@ -57,6 +58,22 @@ double stored_energy(State& state) {
   return sum;
 }
 
+double inner_energy(const Clustered& one, bool held) {
+  double sum = 0;
+  one.each_whole([&](std::span<Tree* const> trees) { sum += common_of(trees, held).inner; });
+  return sum;
+}
+
+double shorten_inner_motion(const Clustered& one, double scale, bool held) {
+  double sum = 0;
+  one.each_whole([&](std::span<Tree* const> trees) {
+    const Common common = common_of(trees, held);
+    sum += common.inner;
+    shorten_inner(trees, common, scale);
+  });
+  return sum;
+}
+
 double motion_of_trees(State& state) {
   double sum = 0;
   for (Tree* tree : state.trees) sum += state.core.energy_of(*tree).kinetic;
@@ -74,6 +91,19 @@ double free_weight(const State& state) {
   double sum = 0;
   for (const Free& one : state.loose_bodies()) sum += one.now.solid->mass * state.shape(one.body).bounding_radius();
   return sum * state.core.settings.gravity.norm();
+}
+
+double script_weight(const State& state) {
+  double sum = 0;
+  for (const Clustered& one : state.clusters) {
+    for (const std::uint32_t index : one.entry->trees) {
+      const Tree& tree = *state.core.trees[index];
+      if (!tree.pushed && !one.entry->asked) continue;
+      for (const TreeLink& link : tree.links)
+        sum += (link.force + link.asked).norm() * state.shape(link.body).bounding_radius();
+    }
+  }
+  return sum;
 }
 
 double energy_of_stillness(const State& state) {

@@ -21,10 +21,18 @@ double motion_of_trees(State& state);
 double weight(const State& state);
 /// The same of bodies without joints.
 double free_weight(const State& state);
+/// What it takes to move them so far against the forces that scripts apply to them.
+double script_weight(const State& state);
 /// What links and bodies that touch them have at most that are still; nothing without links.
 double energy_of_stillness(const State& state);
 /// The state in the world's arrays, while a handler may change it.
 double held_energy(const State& state);
+
+/// The energy with which a cluster's links move relative to one another: each of its wholes has a motion in common.
+/// @param held  something outside may hold them: it is the energy of all motion
+double inner_energy(const Clustered& one, bool held = false);
+/// Shortens the velocities of that motion to `scale` times what they are. Returns the energy that it had.
+double shorten_inner_motion(const Clustered& one, double scale, bool held = false);
 
 /// Notes where the links stand that scripts push, and what their forces have worked since, of one cluster.
 void note_pushed(Clustered& one);

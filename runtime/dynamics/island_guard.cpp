@@ -202,7 +202,7 @@ Trouble Guard::take(MechanicsClient* client, double start, double h) {
   residual_ = residual;
   // Where links jam, what presses is beyond all numbers: its round-off counts up to what still links may have.
   const double sums = std::abs(before) + std::min(books_.pressed(), energy_of_stillness(state_) / kTiny);
-  const double lying = state_.trees.empty() ? 0 : weight(state_) + free_weight(state_);
+  const double lying = state_.trees.empty() ? 0 : weight(state_) + free_weight(state_) + script_weight(state_);
   allowed_ = watch_.tolerated(turnover, h) + kTiny * sums + kStill * lying;
   if (off) return {};
   if (const Trouble deeper = overlaps_.measure(); deeper.found && !state_.squeezed) return deeper;

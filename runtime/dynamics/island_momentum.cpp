@@ -125,7 +125,7 @@ bool Momentum::pushes_itself() const {
 double Momentum::moving(Payers payers) const {
   const bool held = touched_from_outside();
   double sum = paying_free_bodies(payers).inner;
-  for (const Clustered& one : state_.clusters) sum += common_of(one.entry->system->trees(), held).inner;
+  for (const Clustered& one : state_.clusters) sum += inner_energy(one, held);
   return std::max(sum, 0.0);  // links that stand still among one another may have less than nothing, by round-off
 }
 
@@ -212,10 +212,7 @@ void Momentum::slow_free_bodies(const Common& common, double taken) {
 
 /// @return  J, that this took
 double Momentum::shorten(const Clustered& one, double part, bool held) {
-  const std::span trees = one.entry->system->trees();
-  const Common common = common_of(trees, held);
-  shorten_inner(trees, common, std::sqrt(1 - part));
-  return part * common.inner;
+  return part * shorten_inner_motion(one, std::sqrt(1 - part), held);
 }
 
 /// Ends the motion of a cluster's links among one another, and all of it if something may hold the cluster from

@@ -121,12 +121,8 @@ void State::add_force(BodyIndex body, const Vector3& point, const Vector3& force
 }
 
 bool State::calls_out() const {
-  for (const NearPair* pair : pairs)
-    if (pair->handled) return true;
-  for (Tree* tree : trees)
-    for (const TreeLink& link : tree->links)
-      if (core.find(link.body)->force_method) return true;
-  return false;
+  return std::any_of(pairs.begin(), pairs.end(), [](const NearPair* pair) { return pair->handled; }) ||
+         std::any_of(clusters.begin(), clusters.end(), [](const Clustered& one) { return one.entry->asked; });
 }
 
 namespace {

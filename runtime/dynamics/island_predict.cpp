@@ -37,9 +37,9 @@ void release(Tree& tree) {
   }
 }
 
-/// A force on a link of a tree that something outside holds acts by the arms that the link's joints have at each stage.
-/// As a constant force of the joints it would not go on balancing gravity or a script's force on the same link once
-/// light links between it and the world rotate.
+/// A force on a link of a tree that something outside holds, or on one that hangs on far lighter links, acts by the
+/// arms that the link's joints have at each stage. As a constant force of the joints it would not go on balancing
+/// gravity, or what pulls at the same link, once light links between it and the root rotate.
 void brace(Tree& tree, int link, const Vector3& force, const Vector3& point) {
   articulated::Wrench& wrench = tree.links[static_cast<std::size_t>(link)].predicted;
   wrench.force += force;
@@ -126,19 +126,26 @@ void Prediction::add_motors(Tree& tree) {
   }
 }
 
-/// The prediction is far beyond all that moves and falls in h seconds: contacts on several sides of a link press
-/// against one another, and parts of that do not balance.
+/// The prediction is far beyond all that moves and falls, or that scripts push, in h seconds: contacts on several sides
+/// of a link press against one another, and parts of that do not balance. What force methods will push is not known.
 bool Prediction::overpressed(double h) const {
   constexpr double kMost = 1e6;
-  if (!books_.kept()) return false;
+  const auto asked = [](const Clustered& one) { return one.entry->asked; };
+  if (!books_.kept() || std::any_of(state_.clusters.begin(), state_.clusters.end(), asked)) return false;
   double pressed = 0, mass = 0;
   for (const Touch& touch : contacts_.touches()) {
     const NearPair& pair = contacts_.pair_of(touch);
     pressed +=
         (h * touch.predicted).squaredNorm() * (state_.natural_response(pair.a) + state_.natural_response(pair.b));
   }
-  for (const Tree* tree : state_.trees) mass += tree->model.mass();
-  return pressed > kMost * (books_.kinetic() + mass * (h * state_.core.settings.gravity).squaredNorm());
+  double pushed = 0;
+  for (const Tree* tree : state_.trees) {
+    mass += tree->model.mass();
+    if (!tree->pushed) continue;
+    for (const TreeLink& link : tree->links) pushed += (h * link.force).squaredNorm() / link.solid.mass;
+  }
+  const double falls = mass * (h * state_.core.settings.gravity).squaredNorm();
+  return pressed > kMost * (books_.kinetic() + falls + pushed);
 }
 
 void Prediction::add_contact(const Touch& touch) {
@@ -149,14 +156,14 @@ void Prediction::add_contact(const Touch& touch) {
   for (const auto& [side, sign] : {std::pair(&a, 1.0), std::pair(&b, -1.0)}) {
     if (!side->tree || side->mover < 0) continue;
     Tree& tree = *side->tree;
-    if (!tree.loose) {
+    if (!tree.loose || (!inner && tree.links[static_cast<std::size_t>(side->link)].behind_light)) {
       brace(tree, side->link, sign * force, touch.point);
-      continue;
+    } else {
+      tree.work_v.setZero();
+      add_point_row(tree, side->link, touch.point, force, false, sign, tree.work_v.data());
+      add(tree, tree.work_v, 1);
     }
-    tree.work_v.setZero();
-    add_point_row(tree, side->link, touch.point, force, false, sign, tree.work_v.data());
-    add(tree, tree.work_v, 1);
-    if (inner) continue;
+    if (inner || !tree.loose) continue;
     tree.outer_force += sign * force;
     tree.outer_couple += (touch.point - tree.row_center).cross(sign * force);
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "runtime/articulated/energy.hpp"
 #include "runtime/base/error.hpp"
@@ -26,25 +27,40 @@ void move_driver(Free& one, double h) {
     one.now.orientation = (rotation_by(h * one.now.spin) * one.now.orientation).normalized();
 }
 
+/// Shortens the motion of a cluster's links among one another to so much of it as `scale_of` says to its energy, J.
+/// @return  whether it says anything
+template <class Scale>
+bool shorten_by(const Clustered& one, const Scale& scale_of) {
+  std::optional<double> scale;
+  if (one.entry->asked) {
+    scale = scale_of(inner_energy(one));
+    if (scale) shorten_inner_motion(one, *scale);
+  } else {
+    const std::span trees = one.entry->system->trees();
+    const Common common = common_of(trees);
+    scale = scale_of(common.inner);
+    if (scale) shorten_inner(trees, common, *scale);
+  }
+  return scale.has_value();
+}
+
 /// Takes from the motion of a cluster's links among one another what a step gained that nothing explains, or gives it
 /// back: momenta and loops stay as they are, since all their velocities are shortened alike.
 /// Source: Hairer, Lubich and Wanner 2006, IV.4 (projection to the energy).
 /// @param gain  J
 /// @return  false if that is more than a small part of that motion's energy: nothing was changed
 bool take_back(Clustered& one, double gain) {
-  const std::span trees = one.entry->system->trees();
-  const Common common = common_of(trees);
-  if (!(std::abs(gain) <= kFew * common.inner)) return false;
-  shorten_inner(trees, common, std::sqrt(1 - gain / common.inner));
-  return true;
+  return shorten_by(one, [gain](double inner) {
+    return std::abs(gain) <= kFew * inner ? std::optional(std::sqrt(1 - gain / inner)) : std::nullopt;
+  });
 }
 
 /// The same where no finer step would help: whatever it is, down to links at rest among one another.
 void take_back_most(Clustered& one, double gain) {
   if (!(gain > 0)) return;
-  const std::span trees = one.entry->system->trees();
-  const Common common = common_of(trees);
-  if (common.inner > 0) shorten_inner(trees, common, std::sqrt(std::max(0.0, 1 - gain / common.inner)));
+  shorten_by(one, [gain](double inner) {
+    return inner > 0 ? std::optional(std::sqrt(std::max(0.0, 1 - gain / inner))) : std::nullopt;
+  });
 }
 
 void add_works(const Energy& from, Energy& to) {
@@ -102,23 +118,44 @@ void SmoothMotion::move_once(Clustered& one, double time, double h) {
   one.held_work += system.reaction_work();
 }
 
-/// One piece of smooth motion of h seconds, after which a cluster that nothing holds has the momenta it had, and what
-/// gravity gave it.
-void SmoothMotion::move_whole(Clustered& one, double time, double h) {
-  if (!one.loose) return move_once(one, time, h);
-  const std::span trees = one.entry->system->trees();
+namespace {
+
+/// What trees together have, and h seconds later by gravity and by contacts that go on.
+articulated::Whole going_on(std::span<Tree* const> trees, const Vector3& gravity, double h) {
   articulated::Whole wanted = measure(trees);
   Vector3 force = Vector3::Zero();
   for (const Tree* tree : trees) {
     force += tree->outer_force;
     wanted.spin += h * (tree->outer_couple + (tree->row_center - wanted.center).cross(tree->outer_force));
   }
-  const Vector3& gravity = state_.core.settings.gravity;
   force += wanted.mass * gravity;
   wanted.center += h / wanted.mass * (wanted.momentum + 0.5 * h * force);
   wanted.momentum += h * force;
+  return wanted;
+}
+
+}  // namespace
+
+/// One piece of smooth motion of h seconds, after which a cluster that nothing holds has the momenta it had, and what
+/// gravity gave it. Where force methods push, that holds for each tree, with what they gave.
+void SmoothMotion::move_whole(Clustered& one, double time, double h) {
+  const Vector3& gravity = state_.core.settings.gravity;
+  if (one.loose) {
+    const std::span trees = one.entry->system->trees();
+    const articulated::Whole wanted = going_on(trees, gravity, h);
+    move_once(one, time, h);
+    return impose(trees, measure(trees), wanted);
+  }
+  const std::span gains = one.entry->system->gains();
+  for (const Cluster::Gain& gain : gains) gain.tree->whole = going_on({&gain.tree, 1}, gravity, h);
   move_once(one, time, h);
-  impose(trees, measure(trees), wanted);
+  for (const Cluster::Gain& gain : gains) {
+    articulated::Whole wanted = gain.tree->whole;
+    wanted.center += gain.way;
+    wanted.momentum += gain.impulse;
+    wanted.spin += gain.spin;
+    impose({&gain.tree, 1}, measure({&gain.tree, 1}), wanted);
+  }
 }
 
 /// Runge-Kutta 4, or semi-implicit Euler where springs are too fast for it, in as many parts as leave little for

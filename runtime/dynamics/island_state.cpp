@@ -159,11 +159,10 @@ void State::add_cluster(ClusterEntry& cluster) {
 
 /// Nothing but contacts and gravity acts on it from outside.
 bool State::loose(const Clustered& one) const {
+  if (one.entry->asked) return false;
   for (const std::uint32_t index : one.entry->trees) {
     const Tree& tree = *core.trees[index];
     if (!tree.loose || tree.pushed) return false;
-    for (const TreeLink& link : tree.links)
-      if (core.find(link.body)->force_method) return false;
   }
   for (const SpringIndex spring : one.entry->springs) {
     const SpringDescription& is = core.springs[spring].is;

@@ -70,6 +70,18 @@ struct Clustered {
   SubStepEnergy sub_start;  // of the sub-step
 
   bool alone() const { return entry->trees.size() == 1 && entry->springs.empty(); }
+  /// Calls f for trees whose motion in common only what is outside changes: all of them, or where force methods push
+  /// them, those that springs connect.
+  template <class F>
+  void each_whole(const F& f) const {
+    const std::span trees = entry->system->trees();
+    if (!entry->asked) return f(trees);
+    std::size_t first = 0;
+    for (const std::size_t end : entry->wholes) {
+      f(trees.subspan(first, end - first));
+      first = end;
+    }
+  }
   /// What the last smooth motion did: nothing so far.
   void forget_parts();
   /// The island's accuracy, as it is for this cluster.

@@ -47,7 +47,7 @@ BodyIndex Watch::not_finite() const {
 Trouble Watch::judge(double residual, double turnover, double sums) const {
   const double most = state_.accuracy.rung == Rung::Fast ? kResidualFast : kResidual;
   // What lies still is put right by round-off of its solution, and no other energy is converted.
-  const double still = weight(state_) + free_weight(state_);
+  const double still = weight(state_) + free_weight(state_) + script_weight(state_);
   // What swings on springs may stand still as the step ends: its energy errs by a part of what moved before that.
   const double swings = kResidual * state_.swung;
   if (!(residual > std::max(most * turnover, swings) + kTiny * sums + kLying * still)) return {};

@@ -147,11 +147,10 @@ Stage::Stage(Dynamics::Core& core, const ClusterEntry& cluster, MechanicsClient*
     aims_ = aims_ || tree.aimed;
     pushed_ = pushed_ || tree.pushed;
     loops_ = loops_ || !tree.loops.empty();
-    held_ = held_ || !tree.loose;
-    for (const TreeLink& link : tree.links) asked_ = asked_ || core.find(link.body)->force_method;
+    braces_ = braces_ || !tree.loose || tree.has_light();
   }
-  asked_ = asked_ && client != nullptr;
-  needed_ = aims_ || pushed_ || asked_ || loops_ || held_ || !cluster.springs.empty();
+  asked_ = cluster.asked && client != nullptr;
+  needed_ = aims_ || pushed_ || asked_ || loops_ || braces_ || !cluster.springs.empty();
   if (cluster.network) cluster.network->begin(core);
 }
 
@@ -163,8 +162,8 @@ void Stage::aim() {
 
 bool Stage::adds() const {
   if (pressed || pushed_ || asked_ || !cluster_.springs.empty()) return true;
-  return held_ && std::any_of(cluster_.trees.begin(), cluster_.trees.end(),
-                              [this](std::uint32_t index) { return core_.trees[index]->braced; });
+  return braces_ && std::any_of(cluster_.trees.begin(), cluster_.trees.end(),
+                                [this](std::uint32_t index) { return core_.trees[index]->braced; });
 }
 
 bool Stage::accelerate(const articulated::Vector& q, const articulated::Vector& v, articulated::Vector& a) {
@@ -178,13 +177,15 @@ bool Stage::accelerate(const articulated::Vector& q, const articulated::Vector& 
 void Stage::add(double time) {
   script_ = drag_ = reaction_ = 0;
   if (!adds()) return;
+  if (asked_) show();
   for (const std::uint32_t index : cluster_.trees) {
     Tree& tree = *core_.trees[index];
     for (int i = 0; i < tree.model.size(); ++i) {
       TreeLink& link = tree.links[static_cast<std::size_t>(i)];
       articulated::Wrench& wrench = tree.loads.wrenches[static_cast<std::size_t>(i)];
       wrench = {link.torque, link.force};
-      if (asked_ && core_.find(link.body)->force_method) wrench.force += link.asked = asked(tree, i, time);
+      if (asked_ && core_.find(link.body)->force_method)
+        wrench.force += link.asked = client_->stage_force(link.body, time, core_.sub_step);
       if (wrench.force != Vector3::Zero() || wrench.couple != Vector3::Zero())
         script_ += wrench.force.dot(articulated::com_velocity(tree.model, tree.data, i)) +
                    wrench.couple.dot(articulated::spin(tree.data, i));
@@ -203,11 +204,9 @@ void Stage::add(double time) {
   for (const SpringIndex spring : cluster_.springs) pull(core_.springs[spring]);
 }
 
-Vector3 Stage::asked(Tree& tree, int link, double time) {
-  const BodyIndex body = tree.links[static_cast<std::size_t>(link)].body;
-  const Pose at = tree.pose(link);
-  core_.bodies->set_motion(body, at.location, at.orientation, tree.velocity(link), tree.data.of(link).spin);
-  return client_->stage_force(body, time, core_.sub_step);
+/// All links, also those that have no force method, into the arrays, where force methods see them.
+void Stage::show() {
+  for (const std::uint32_t index : cluster_.trees) core_.write_back(*core_.trees[index]);
 }
 
 Stage::End Stage::end_of(BodyIndex body, const Vector3& point) const {

@@ -18,7 +18,7 @@ namespace breve {
 
 // --- clusters -------------------------------------------------------------------------------------------------------
 
-ClusterEntry::ClusterEntry(std::pmr::memory_resource* memory) : trees(memory), springs(memory) {}
+ClusterEntry::ClusterEntry(std::pmr::memory_resource* memory) : trees(memory), springs(memory), wholes(memory) {}
 ClusterEntry::~ClusterEntry() = default;
 
 namespace {
@@ -40,16 +40,52 @@ void make_network(const Dynamics::Core& core, ClusterEntry& entry, std::span<Tre
   }
 }
 
+/// Trees that springs connect stand together in a cluster that force methods connect, in the order of their first one.
+/// @param sprung  by tree: one of those that springs connect with it, the same one for all of these
+void order_wholes(ClusterEntry& entry, std::span<const std::uint32_t> sprung) {
+  entry.asked = true;
+  std::pmr::vector<std::size_t> place(sprung.size(), sprung.size(), entry.trees.get_allocator().resource());
+  const auto place_of = [&](std::uint32_t tree) -> std::size_t& { return place[sprung[tree]]; };
+  for (std::size_t i = 0; i < entry.trees.size(); ++i) place_of(entry.trees[i]) = std::min(place_of(entry.trees[i]), i);
+  std::stable_sort(entry.trees.begin(), entry.trees.end(),
+                   [&](std::uint32_t x, std::uint32_t y) { return place_of(x) < place_of(y); });
+  for (std::size_t i = 1; i <= entry.trees.size(); ++i)
+    if (i == entry.trees.size() || place_of(entry.trees[i]) != place_of(entry.trees[i - 1])) entry.wholes.push_back(i);
+}
+
+/// Sets of trees.
+class Sets {
+ public:
+  Sets(std::size_t trees, std::pmr::memory_resource* memory) : set_(trees, memory) {
+    std::iota(set_.begin(), set_.end(), 0U);
+  }
+  std::uint32_t of(std::uint32_t tree) {
+    while (set_[tree] != tree) tree = set_[tree] = set_[set_[tree]];
+    return tree;
+  }
+  void join(std::uint32_t a, std::uint32_t b) { set_[of(a)] = of(b); }
+
+ private:
+  std::pmr::vector<std::uint32_t> set_;
+};
+
+/// Force methods may look at one another's bodies: at each stage all of these are to stand where the stage is.
+/// @return  one of their trees, or kNone
+std::uint32_t join_asked(std::span<const BodyEntry> entries, Sets& sets) {
+  std::uint32_t asked = kNone;
+  for (const BodyEntry& entry : entries) {
+    if (entry.body == kNoBody || !entry.force_method || entry.tree == kNone) continue;
+    if (asked == kNone) asked = entry.tree;
+    sets.join(entry.tree, asked);
+  }
+  return asked;
+}
+
 }  // namespace
 
 void Dynamics::Core::build_clusters() {
   clusters.clear();
-  std::pmr::vector<std::uint32_t> set(trees.size(), memory);
-  std::iota(set.begin(), set.end(), 0U);
-  const auto set_of = [&set](std::uint32_t i) {
-    while (set[i] != i) i = set[i] = set[set[i]];
-    return i;
-  };
+  Sets sets(trees.size(), memory);
   const auto tree_of = [this](BodyIndex body) {
     const BodyEntry* known = find(body);
     return known ? known->tree : kNone;
@@ -57,22 +93,26 @@ void Dynamics::Core::build_clusters() {
   for (const SpringEntry& spring : springs) {
     if (!spring.used) continue;
     const std::uint32_t a = tree_of(spring.is.a), b = tree_of(spring.is.b);
-    if (a != kNone && b != kNone) set[set_of(a)] = set_of(b);
+    if (a != kNone && b != kNone) sets.join(a, b);
   }
+  std::pmr::vector<std::uint32_t> sprung(trees.size(), kNone, memory);
+  for (const std::uint32_t index : tree_order) sprung[index] = sets.of(index);
+  const std::uint32_t asked = join_asked(entries, sets);
   std::pmr::vector<ClusterEntry*> of(trees.size(), nullptr, memory);
   for (const std::uint32_t index : tree_order) {
-    ClusterEntry*& entry = of[set_of(index)];
+    ClusterEntry*& entry = of[sets.of(index)];
     if (!entry) {
       clusters.push_back(make_in<ClusterEntry>(memory, memory));
       entry = clusters.back().get();
     }
     entry->trees.push_back(index);
   }
+  if (asked != kNone) order_wholes(*of[sets.of(asked)], sprung);
   for (SpringIndex i = 0; i < springs.size(); ++i) {
     if (!springs[i].used) continue;
     std::uint32_t tree = tree_of(springs[i].is.a);
     if (tree == kNone) tree = tree_of(springs[i].is.b);
-    if (tree != kNone) of[set_of(tree)]->springs.push_back(i);
+    if (tree != kNone) of[sets.of(tree)]->springs.push_back(i);
   }
   for (const auto& entry : clusters) {
     std::pmr::vector<Tree*> members(memory);
@@ -86,7 +126,7 @@ void Dynamics::Core::build_clusters() {
       const Accuracy& one = accuracy_of(tree->links.front().body);
       if (!finest || finer(one.rung, finest->rung)) finest = &one;
     }
-    entry->system = make_in<Cluster>(memory, memory, members, *finest, settings.unit);
+    entry->system = make_in<Cluster>(memory, memory, members, *finest, settings.unit, entry->asked);
     if (!entry->springs.empty() && SpringNetwork::are(members)) make_network(*this, *entry, members);
   }
   // Not before: what memory cut short is made anew.

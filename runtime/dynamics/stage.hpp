@@ -35,13 +35,13 @@ class Stage final : public StageForces {
     Vector3 point = Vector3::Zero(), velocity = Vector3::Zero();
   };
   End end_of(BodyIndex body, const Vector3& point) const;
-  Vector3 asked(Tree& tree, int link, double time);
+  void show();
   void pull(SpringEntry& spring);
 
   Dynamics::Core& core_;
   const ClusterEntry& cluster_;
   MechanicsClient* client_;
-  bool aims_ = false, pushed_ = false, asked_ = false, loops_ = false, held_ = false, needed_ = false;
+  bool aims_ = false, pushed_ = false, asked_ = false, loops_ = false, braces_ = false, needed_ = false;
   double script_ = 0, drag_ = 0, reaction_ = 0;
 };
 

@@ -35,7 +35,8 @@ struct TreeLink {
   bool slow_spring = false;                                   // its joint's spring is slower than the step
   double slow_damping = 0;                                    // of that, if it is
   bool motor = false;                                         // its joint has one
-  double gain_unit = 0;  // effective inertia of the joint's motor as the tree was built, kg or kg*m^2
+  bool behind_light = false;  // on its way from the root, one link is far heavier than one before it
+  double gain_unit = 0;       // effective inertia of the joint's motor as the tree was built, kg or kg*m^2
 };
 
 /// A body that does not move by itself and holds the tree, and where it stood when the tree was built.
@@ -142,6 +143,9 @@ struct Tree : InMemory {
   /// Mass, centre and momenta; and the energy of motion, J. Links are placed for them.
   const articulated::Whole& measured();
   double kinetic();
+  bool has_light() const {
+    return std::any_of(links.begin(), links.end(), [](const TreeLink& link) { return link.behind_light; });
+  }
   void reserve_rows();  // once `loops` and `held` are known
   /// The pose of the body of a link, after forward_kinematics.
   Pose pose(int link) const;

@@ -271,6 +271,19 @@ void describe_links(const Dynamics::Core& core, std::span<const Planned> plan,
   }
 }
 
+void find_light(std::span<const Planned> plan, std::span<TreeLink> links, std::pmr::memory_resource* memory) {
+  constexpr double kFar = 10;                 // times as heavy
+  std::pmr::vector<double> lightest(memory);  // kg, between the root and the link
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const double mass = links[i].solid.mass;
+    lightest.push_back(mass);
+    if (plan[i].parent < 0) continue;
+    const auto parent = static_cast<std::size_t>(plan[i].parent);
+    links[i].behind_light = links[parent].behind_light || mass > kFar * lightest[parent];
+    lightest[i] = std::min(mass, lightest[parent]);
+  }
+}
+
 /// The tree of a plan, in no table yet.
 std::unique_ptr<Tree> make_tree(const Dynamics::Core& core, const Plan& plan) {
   std::pmr::memory_resource* memory = core.memory;
@@ -278,6 +291,7 @@ std::unique_ptr<Tree> make_tree(const Dynamics::Core& core, const Plan& plan) {
   std::pmr::vector<TreeLink> links(memory);
   std::pmr::vector<TreeAnchor> anchors(memory);
   describe_links(core, plan.links(), description, links, anchors);
+  find_light(plan.links(), links, memory);
   std::unique_ptr<Tree> tree = make_in<Tree>(memory, memory, description);
   tree->links = links;
   tree->anchors = anchors;

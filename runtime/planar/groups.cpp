@@ -107,6 +107,8 @@ void Planar::Core::number_groups(double dt) {
     if (joint.used) unite(find(joint.is.parent), find(joint.is.child));
   for (const FlatSpring& spring : springs)
     if (spring.used) unite(find(spring.is.a), find(spring.is.b));
+  // Force methods may look at one another's bodies.
+  for (const BodyIndex body : force_methods) unite(find(force_methods.front()), find(body));
   std::pmr::vector<std::pair<b2AABB, const FlatBody*>> fast(memory);
   for (const FlatBody& flat : slots) {
     if (flat.body == kNoBody || flat.fixed || !flat.b2->IsBullet() || !flat.b2->IsAwake()) continue;

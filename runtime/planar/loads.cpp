@@ -28,11 +28,13 @@ void Planar::Core::apply_springs(double dt) {
   if (any) rows.solve();
 }
 
+/// Force methods see where all bodies stand now, and are asked before anything moves.
 void Planar::Core::ask_forces() {
+  for (FlatBody& flat : slots)
+    if (flat.body != kNoBody && !flat.fixed && !flat.set_apart && is_finite(*flat.b2)) write_back(flat);
   for (std::size_t i = 0; i < force_methods.size(); ++i) {
     FlatBody* flat = find(force_methods[i]);
     if (!flat || flat->fixed || flat->set_apart) continue;
-    write_back(*flat);
     flat->asked = client->stage_force(flat->body, now, sub_step).head<2>();
     flat->pulled = true;
   }
