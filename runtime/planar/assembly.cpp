@@ -391,7 +391,7 @@ bool Planar::Core::Assembly::take_all(double dt, int parts) {
     rates_[i][joints_[i].free_row()] = 0;
   }
   const double had = kinetic();
-  give_rates();  // what contacts left, the joints may not allow
+  give_rates();                   // what contacts left, the joints may not allow
   constexpr double kSeen = 1e-9;  // of it: less is round-off of single precision
   torn_ = had - kinetic();
   if (!(torn_ > kSeen * had)) torn_ = 0;

@@ -115,6 +115,7 @@ class Planar::Core::Assembly {
   bool pulled() const;
   double least_move() const;
   bool stops(double dt) const;
+  bool driven() const;
   double own_rate(std::size_t index, std::span<const FlatPose> poses) const;
   void begin_works(std::span<const FlatPose> poses);
   void end_works(std::span<const FlatPose> poses, double part);

@@ -79,6 +79,12 @@ double Planar::Core::Assembly::drive_work(double dt) {
   return sum;
 }
 
+/// Motors act in it.
+bool Planar::Core::Assembly::driven() const {
+  return std::any_of(joints_.begin(), joints_.end(),
+                     [](const Member& member) { return member.load != 0 || (member.locked && member.strength > 0); });
+}
+
 /// The work of the springs of prismatic joints; that of all others is among that of forces.
 double Planar::Core::Assembly::spring_work() const {
   double sum = 0;
@@ -87,16 +93,16 @@ double Planar::Core::Assembly::spring_work() const {
   return sum;
 }
 
-/// The works of gravity, of constant forces and of motors are known: energy that differs from them is an error. Limits
-/// may take more, so energy only goes back where none of them stops anything; one at which a joint rests takes nothing.
-/// The works of springs are not exact.
+/// The works of gravity, of constant forces and of motors are known: energy that exceeds them is an error. Limits may
+/// take more, and the works of motors are less exact than the motion, so energy only goes back where neither acts; a
+/// limit at which a joint rests takes nothing. The works of springs are not exact.
 /// @param began  the energy of motion as the sub-step of dt seconds began, in Box2D's units
 void Planar::Core::Assembly::settle_energy(double began, double dt) {
   lost_ = missing_ = 0;
   const bool limits = stops(dt), springs = pulled();
   if (springs && !limits) return;
   const double energy = began + work_ + drive_work(dt) + spring_work();
-  if (!springs && (!limits || kinetic() > energy)) missing_ = restore_energy(energy);
+  if (!springs && (!(limits || driven()) || kinetic() > energy)) missing_ = restore_energy(energy);
   if (limits) lost_ = std::max(energy - kinetic(), 0.0);
 }
 
