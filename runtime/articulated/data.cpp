@@ -19,7 +19,7 @@ Data::Data(const Model& model, std::pmr::memory_resource* memory)
       at_(neutral_state(model)) {}
 
 bool Data::same_bits(const Vector& a, const Vector& b) {
-  return std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+  return a.size() == 0 || std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
 }
 
 void Data::stand_at(const State& state) {
