@@ -50,6 +50,15 @@ struct Motion {
   Vector3 velocity = Vector3::Zero();  // of that point
 };
 
+/// What motors of ball joints that are at their limit need besides (ball_motors.hpp).
+struct BallMotors {
+  Vector gains;                        // (nv) with which they give just their limit
+  Vector direction, answer;            // (nv)
+  std::pmr::vector<int> at;            // first velocity of each that is at its limit
+  std::pmr::vector<double> responses;  // of each to each
+  std::pmr::vector<double> steps;
+};
+
 class Data {
  public:
   /// @param memory  where the arrays of links live; outlives the Data
@@ -67,7 +76,8 @@ class Data {
   Vector rest;                             // (nq) all joints at zero: where springs are slack if nothing else is said
   Vector deflection;                       // (nv) of springs
   Vector held;                             // (nv) forces of motors that are at their limit
-  std::pmr::vector<signed char> at_limit;  // (nv) 1 or -1: the motor is, on that side; 0: it is not
+  std::pmr::vector<signed char> at_limit;  // (nv) 1 or -1: the motor is, on that side (of a ball joint 1); 0: it is not
+  BallMotors balls;
 
   Work& of(int link) { return work[static_cast<std::size_t>(link + 1)]; }
   const Work& of(int link) const { return work[static_cast<std::size_t>(link + 1)]; }

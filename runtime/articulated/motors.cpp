@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "runtime/articulated/ball_motors.hpp"
+
 namespace breve::articulated {
 
 namespace {
@@ -16,22 +18,6 @@ template <class V>
 void limit_force(double limit, V force) {
   const double size = force.norm();
   if (size > limit) force *= limit / size;
-}
-
-/// Each motor of a universal joint has the limit for itself, the three of a ball joint share it: first velocity and
-/// count of each.
-template <class F>
-void for_each_motor(const Body& body, F f) {
-  if (body.type == JointType::Ball) return f(body.v, 3);
-  for (int k = body.v; k < body.v + velocity_count(body.type); ++k) f(k, 1);
-}
-
-template <class F>
-void for_each_motor(const Model& model, const Loads& loads, F f) {
-  for (int i = 0; i < model.size(); ++i) {
-    const Drive& drive = loads.drives[static_cast<std::size_t>(i)];
-    if (drive.motor_gain > 0) for_each_motor(model.body(i), [&](int first, int count) { f(drive, first, count); });
-  }
 }
 
 signed char& at_limit(Data& data, int velocity) { return data.at_limit[static_cast<std::size_t>(velocity)]; }
@@ -54,19 +40,22 @@ bool settled(const Loads& loads, const Drive& drive, const State& state, double 
   const double slack = ask(loads, drive, state, lag, first, count, data);
   const auto wanted = data.deflection.segment(first, count);
   if (!at_limit(data, first)) return !(wanted.norm() > drive.motor_limit + slack);
-  const auto held = data.held.segment(first, count);
-  const double size = held.norm();
-  return size == 0 ? wanted.norm() > 0 : wanted.dot(held) / size >= drive.motor_limit - slack;
+  if (count > 1) return true;  // correct_ball_motors() finds out
+  const double held = data.held[first], side = held < 0 ? -1 : 1;
+  return held == 0 ? wanted[0] != 0 : side * wanted[0] >= drive.motor_limit - slack;
 }
 
 /// Takes it to be where it was not: data.deflection is what it would give without a limit.
 void exchange(const Drive& drive, int first, int count, Data& data) {
   const bool hold = !at_limit(data, first);
-  for (int k = first; k < first + count; ++k) {
-    at_limit(data, k) = !hold ? 0 : data.deflection[k] < 0 ? -1 : 1;
-    data.held[k] = data.deflection[k];
+  if (count > 1) {
+    for (int k = first; k < first + count; ++k) at_limit(data, k) = hold;
+    data.balls.gains.segment(first, count).setConstant(drive.motor_gain);
+    return;
   }
-  if (hold) limit_force(drive.motor_limit, data.held.segment(first, count));
+  at_limit(data, first) = !hold ? 0 : data.deflection[first] < 0 ? -1 : 1;
+  data.held[first] = data.deflection[first];
+  if (hold) limit_force(drive.motor_limit, data.held.segment(first, 1));
 }
 
 }  // namespace
@@ -78,6 +67,10 @@ void add_motor(const Loads& loads, const Drive& drive, const Body& body, const S
     if (lag == 0) {
       limit_force(drive.motor_limit, force);
       data.tau.segment(first, count) += force;
+    } else if (at_limit(data, first) && count > 1) {
+      const double gain = data.balls.gains[first];
+      data.tau.segment(first, count) += gain / drive.motor_gain * force;
+      data.diagonal.segment(first, count).array() += lag * gain;
     } else if (at_limit(data, first)) {
       data.tau.segment(first, count) += data.held.segment(first, count);
     } else {
@@ -90,14 +83,33 @@ void add_motor(const Loads& loads, const Drive& drive, const Body& body, const S
 void begin_motors(const Model& model, const Loads& loads, MotorGuess guess, Data& data) {
   if (guess == MotorGuess::None) std::fill(data.at_limit.begin(), data.at_limit.end(), 0);
   for_each_motor(model, loads, [&](const Drive& drive, int first, int count) {
-    // Which way a ball joint's couple points, one side does not tell.
-    for (int k = first; count > 1 && k < first + count; ++k) at_limit(data, k) = 0;
     if (count == 1) data.held[first] = at_limit(data, first) * drive.motor_limit;
+    // Drives may be others than they were.
+    for (int k = first; count > 1 && k < first + count; ++k)
+      if (!(data.balls.gains[k] < drive.motor_gain)) at_limit(data, k) = 0;
   });
 }
 
+double motor_force(const Loads& loads, const Drive& drive, int velocity, int shared, double v, double a, double lag,
+                   const Data& data) {
+  const bool limited = data.at_limit[static_cast<std::size_t>(velocity)] != 0;
+  if (limited && shared == 1) return data.held[velocity];
+  const double gain = limited ? data.balls.gains[velocity] : drive.motor_gain;
+  return gain * (motor_speed(loads, velocity) - v - lag * a);
+}
+
 bool MotorSearch::changes(const Model& model, const Loads& loads, const State& state, double step, Data& data) {
+  constexpr int kMostCorrections = 60;  // four to six are usual, and some more from afar
+  constexpr double kRough = 0.1;        // of its limit: before others are judged by it
   const double lag = motor_lag(loads, step);
+  const double error = error_of_ball_motors(model, loads, state, lag, data);
+  const bool correctable = error > 0 && corrections_ < kMostCorrections;
+  const auto correct = [&] {
+    ++corrections_;
+    correct_ball_motors(model, loads, state, lag, data);
+    return true;
+  };
+  if (correctable && error > kRough) return correct();
   int wrong = 0, last = -1, motors = 0;
   for_each_motor(model, loads, [&](const Drive& drive, int first, int count) {
     ++motors;
@@ -105,8 +117,9 @@ bool MotorSearch::changes(const Model& model, const Loads& loads, const State& s
     ++wrong;
     last = first;
   });
+  if (wrong == 0) return correctable && correct();
   // Where round-off decides, both answers are right.
-  if (wrong == 0 || ++rounds_ > 8 + 4 * motors) return false;
+  if (++rounds_ > 8 + 4 * motors) return false;
   constexpr int kSpare = 4;
   bool all = true;
   if (wrong < wrong_) {
@@ -121,7 +134,8 @@ bool MotorSearch::changes(const Model& model, const Loads& loads, const State& s
     if (!all && first != last) return;
     if (!settled(loads, drive, state, lag, first, count, data)) exchange(drive, first, count, data);
   });
-  return true;
+  // Ball joints that have come to their limit are far from the gain that gives it.
+  return error_of_ball_motors(model, loads, state, lag, data) > 0 ? correct() : true;
 }
 
 }  // namespace breve::articulated

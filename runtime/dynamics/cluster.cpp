@@ -4,6 +4,7 @@
 #include "runtime/articulated/energy.hpp"
 #include "runtime/articulated/forward_dynamics.hpp"
 #include "runtime/articulated/kinematics.hpp"
+#include "runtime/articulated/motors.hpp"
 
 namespace breve {
 
@@ -279,8 +280,8 @@ void Cluster::add_powers(const Tree& tree, double step, const double* v, const d
       powers.drag += drive.damping * (v[k] + step * a[k]) * mean;
       powers.drag += tree.links[static_cast<std::size_t>(i)].slow_damping * v[k] * mean;
       if (!(drive.motor_gain > 0)) continue;
-      const bool held = tree.data.at_limit[static_cast<std::size_t>(k)] != 0;
-      const double torque = held ? tree.data.held[k] : drive.motor_gain * (loads.motor_speed[k] - v[k] - lag * a[k]);
+      const int shared = body.type == articulated::JointType::Ball ? 3 : 1;
+      const double torque = articulated::motor_force(loads, drive, k, shared, v[k], a[k], lag, tree.data);
       powers.motor += torque * mean;
       torques[k] = torque;
     }

@@ -80,10 +80,13 @@ void Watch::shorten_sub_steps(double h) {
   constexpr double kMostParts = 16;     // of a sub-step
   constexpr double kImplicitParts = 4;  // likewise, of order 1
   const double part = state_.accuracy.step > 0 ? std::min(state_.accuracy.step, h) : h;
-  const bool fast_springs = find_fast_springs(kMostRotation * kMostParts / part);
+  // Without contacts `reference` leaves a step to step control, but its rows err as in a sub-step with contacts.
+  const double rows = state_.accuracy.contact_step;
+  const double finer = state_.accuracy.rung == Rung::Reference && rows > 0 ? std::max(1.0, std::ceil(part / rows)) : 1;
+  const bool fast_springs = find_fast_springs(kMostRotation * finer * kMostParts / part);
   const double rotation = std::max(fastest_rotation(part).value, driven_swing(part));
-  const double wanted = std::min(std::ceil(rotation / kMostRotation), kMostParts);
-  const double parts = std::max(wanted, fast_springs ? kImplicitParts : 1);
+  const double wanted = std::min(std::ceil(rotation / kMostRotation), finer * kMostParts);
+  const double parts = std::max(wanted, fast_springs ? finer * kImplicitParts : 1);
   if (parts > 1) {
     Accuracy shorter = state_.accuracy;
     shorter.step = part / parts;
