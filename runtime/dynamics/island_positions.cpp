@@ -378,8 +378,8 @@ bool Positions::yields(const Clustered& one) const {
 
 /// After the rows moved positions: whether a contact of links that held is deeper than it may be. A constant force does
 /// not hold against a spring that is fast for the sub-step, although the velocities at its ends say that it does. A
-/// link that comes down too slowly for an impact also ends deeper, by half of its way in the sub-step; `conserving`
-/// takes no energy from contacts to lift it later.
+/// body that comes down too slowly for an impact also ends deeper, by half of its way in the sub-step; on `conserving`
+/// it is raised at once and not lifted later.
 bool Positions::sank() {
   constexpr double kSunk = 0.005;  // of the bodies' size
   const bool all = state_.accuracy.rung == Rung::Conserving;
