@@ -118,7 +118,8 @@ bool within_reach(const Workspace& work, double left) {
 
 bool enough_from_far(const Workspace& work, const LinearSolves& solves) {
   constexpr int kInterior = 12, kPoints = 8;
-  return solves.left() >= kInterior + static_cast<int>(work.points.size()) / kPoints;
+  const bool rests = !(largest_change(work) > 0);
+  return solves.left() >= kInterior + (rests ? 0 : static_cast<int>(work.points.size()) / kPoints);
 }
 
 namespace {

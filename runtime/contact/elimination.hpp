@@ -29,9 +29,12 @@ class BandMatrix {
   double* numbers_at_ = nullptr;
 };
 
-/// Solve A x = b in place: `b` becomes x, the matrix is destroyed.
-/// @param ends  as many numbers of workspace
-/// @return      false if a pivot vanishes or is not finite; b is then of no use
-bool eliminate(const BandMatrix& matrix, std::span<double> b, std::span<int> ends);
+/// A becomes L and U in place, a few columns at a time.
+/// @param pivots, ends  as many numbers each: the row each one was exchanged for, and where the rows of U end
+/// @return              false if a pivot vanishes or is not finite; the matrix is then of no use
+bool factorize(const BandMatrix& matrix, std::span<int> pivots, std::span<int> ends);
+
+/// Solves A x = b with what factorize() left of A: b becomes x.
+void substitute(const BandMatrix& factors, std::span<const int> pivots, std::span<const int> ends, std::span<double> b);
 
 }  // namespace breve::contact

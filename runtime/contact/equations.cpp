@@ -32,7 +32,7 @@ bool Equations::fits() const { return size_ > 0 && size_ <= kMostVelocities; }
 double* Equations::begin(std::size_t numbers) {
   const auto n = static_cast<std::size_t>(size_);
   offsets_ = work_.indices.size();
-  work_.indices.resize(offsets_ + n);
+  work_.indices.resize(offsets_ + 2 * n);
   int widest = 0;
   for (const Packed& mover : work_.movers) widest = std::max(widest, mover.size);
   const auto width = static_cast<std::size_t>(widest);
@@ -119,16 +119,17 @@ void Equations::clear() {
   for (int k = 0; k < size_; ++k) matrix_.row(k)[k] = 1;
 }
 
+bool Equations::factorize() { return breve::contact::factorize(matrix_, pivots(), ends()); }
+
 bool Equations::solve(const double* q, double* du) {
   std::fill_n(step_, size_, 0.0);
   set_velocities(step_);
   push_impulses(q, 1);
   get_velocities(step_);
-  const auto n = static_cast<std::size_t>(size_);
   // An infinite or invalid value leaves no trace, neither here nor in the world, which takes part in every push.
   std::fill_n(work_.movers.front().v, 6, 0.0);
   if (!std::all_of(step_, step_ + size_, [](double v) { return std::isfinite(v); })) return false;
-  if (!eliminate(matrix_, {step_, n}, {work_.indices.data() + offsets_, n})) return false;
+  substitute(matrix_, pivots(), ends(), {step_, static_cast<std::size_t>(size_)});
   set_velocities(step_);
   read_rows(du);
   return std::all_of(du, du + rows_, [](double u) { return std::isfinite(u); });

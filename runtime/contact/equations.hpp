@@ -30,8 +30,10 @@ class Equations {
   void clear();
   void add_point(std::size_t point, const Slope& D);
   void add_scalar(std::size_t scalar, double slope);
-  /// Solves (I + R D J) dv = R q; du = J dv. The matrix and the velocities are then of no use.
   /// @return false if the matrix is singular
+  bool factorize();
+  /// Solves (I + R D J) dv = R q after factorize(); du = J dv. The velocities of the island are then of no use.
+  /// @return false if a number overflows
   bool solve(const double* q, double* du);
 
  private:
@@ -47,6 +49,8 @@ class Equations {
   std::size_t rows_, offsets_ = 0;
   int size_ = 0;  // numbers in v
   BandMatrix matrix_;
+  std::span<int> pivots() { return {work_.indices.data() + offsets_, static_cast<std::size_t>(size_)}; }
+  std::span<int> ends() { return {work_.indices.data() + offsets_ + size_, static_cast<std::size_t>(size_)}; }
   double *free_ = nullptr, *step_ = nullptr;
   double* columns_[3] = {};  // D J of the row that is added, one side
 };

@@ -269,7 +269,7 @@ bool Interior::step(double target, Lengths& lengths) {
     equations_.add_scalar(i, work_.slopes[points + i].nn);
   }
   double* const du = dx_;
-  if (!equations_.solve(r_, du)) return false;
+  if (!equations_.factorize() || !equations_.solve(r_, du)) return false;
   for (std::size_t i = 0; i < points; ++i) {
     apply_slope(work_.slopes[i], du + 3 * i, r_ + 3 * i);
     finish_point(i, lengths);

@@ -103,7 +103,7 @@ bool Newton::find_step() {
   for (std::size_t i = 0; i < work_.scalars.size(); ++i, ++at)
     equations_.add_scalar(i, project(work_.scalars[i], centre_[at], u_[at], stiffness_, p[0]));
   for (std::size_t k = 0; k < rows_; ++k) dq_[k] = q_[k] - p_[k];
-  if (!equations_.solve(dq_, du_)) return false;
+  if (!equations_.factorize() || !equations_.solve(dq_, du_)) return false;
   at = 0;
   for (const Point& c : work_.points) {
     apply_slope(project(c, centre_ + at, u_ + at, stiffness_, p), du_ + at, dq_ + at);

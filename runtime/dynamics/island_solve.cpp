@@ -83,11 +83,12 @@ void Solver::solve_once() {
   contact::SolveSettings settings = state_.solve_settings();
   const int fast = state_.core.settings.fast_contacts;
   if (fast > 0) settings.iterations = fast;
-  constexpr double kSwept = 0.1;     // of the speed that is rest
-  constexpr double kStanding = 2e6;  // operations
+  constexpr double kSwept = 0.1;                                               // of the speed that is rest
+  constexpr double kBurdened = 2e6, kStanding = 5e7, kStandingOnFast = 1.8e7;  // operations
   settings.direct = fast == 0;
   settings.direct_share = direct_share();
-  if (stands() || burdened()) settings.direct_most = kStanding;
+  if (burdened()) settings.direct_most = kBurdened;
+  if (stands()) settings.direct_most = state_.accuracy.direct ? kStanding : kStandingOnFast;
   // Where `fast` solves directly, no digit that cannot be seen in a step is worth a linear solve.
   constexpr double kUnseen = 1e-3;  // of the speed that is rest
   if (!state_.accuracy.direct) settings.tolerance = std::max(settings.tolerance, kUnseen * contacts_.resting());
