@@ -40,7 +40,7 @@ Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees
       unit_(unit),
       kinds_(memory),
       motors_(memory),
-      gains_(memory) {
+      received_(memory) {
   for (std::size_t t = 0; t < trees_.size(); ++t) {
     const Tree* tree = trees_[t];
     for (int i = 0; i < tree->model.size(); ++i) {
@@ -49,7 +49,7 @@ Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees
       for (int k = body.v; k < body.v + articulated::velocity_count(body.type); ++k) motors_.push_back({nv_ + k, t, k});
     }
     // Bodies without joints have momenta for coordinates, which every integrator keeps.
-    if (asked && tree->loose && tree->model.size() > 1) gains_.push_back({trees_[t]});
+    if (asked && tree->loose && tree->model.size() > 1) received_.push_back({trees_[t]});
     nq_ += tree->model.positions();
     nv_ += tree->model.velocities();
     mass_ += tree->model.mass();
@@ -58,7 +58,7 @@ Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees
       for (int k = 0; k < articulated::velocity_count(body.type); ++k)
         kinds_.push_back(articulated::is_length(body.type, k) ? Kind::Length : Kind::Angle);
   }
-  kinds_.insert(kinds_.end(), kWorks + motors_.size() + kGain * gains_.size(), Kind::Ledger);
+  kinds_.insert(kinds_.end(), kWorks + motors_.size() + kReceived * received_.size(), Kind::Ledger);
   at_.q.setZero(nq_);
   at_.v.setZero(velocities());
   at_.mean.setZero(velocities());
@@ -154,7 +154,7 @@ void Cluster::write(const Vector& q, const Vector& v) {
   for (Tree* tree : trees_) tree->part_impulse.setZero();
   for (std::size_t i = 0; i < motors_.size(); ++i)
     trees_[motors_[i].tree]->part_impulse[motors_[i].own] = v[nv_ + kWorks + static_cast<Eigen::Index>(i)] * mass_;
-  take_gains(v);
+  take_received(v);
 }
 
 void Cluster::place(const Vector& q, const Vector& v) {
@@ -196,14 +196,14 @@ void Cluster::acceleration(double t, const Vector& q, const Vector& v, double st
   a.segment<kWorks>(nv_) << powers.motor / mass_, powers.script / mass_, powers.drag / mass_, powers.reaction / mass_;
   for (std::size_t i = 0; i < motors_.size(); ++i)
     a[nv_ + kWorks + static_cast<Eigen::Index>(i)] = torques_[motors_[i].place] / mass_;
-  if (!gains_.empty()) add_gains(v, a);
+  if (!received_.empty()) add_received(v, a);
 }
 
 /// Forces of scripts and springs on links, which are placed; those of contacts are known without.
-void Cluster::add_gains(const Vector& v, Vector& a) const {
-  int at = gains_at();
-  for (const Gain& gain : gains_) {
-    const Tree& tree = *gain.tree;
+void Cluster::add_received(const Vector& v, Vector& a) const {
+  int at = received_at();
+  for (const Received& one : received_) {
+    const Tree& tree = *one.tree;
     const Vector3 center = articulated::centre_of_mass(tree.model, tree.data);
     Vector3 force = Vector3::Zero(), couple = Vector3::Zero();
     for (int i = 0; i < tree.model.size(); ++i) {
@@ -218,19 +218,19 @@ void Cluster::add_gains(const Vector& v, Vector& a) const {
     a.segment<3>(at) = force / mass;
     a.segment<3>(at + 3) = v.segment<3>(at);
     a.segment<3>(at + 6) = couple / mass;
-    at += kGain;
+    at += kReceived;
   }
 }
 
-void Cluster::take_gains(const Vector& v) {
-  int at = gains_at();
-  for (Gain& gain : gains_) {
-    const double mass = gain.tree->model.mass();
-    gain.impulse = mass * v.segment<3>(at);
+void Cluster::take_received(const Vector& v) {
+  int at = received_at();
+  for (Received& one : received_) {
+    const double mass = one.tree->model.mass();
+    one.impulse = mass * v.segment<3>(at);
     // Semi-implicit Euler knows only where it began.
-    gain.way = semi_implicit() ? Vector3(0.5 * current_step_ * v.segment<3>(at)) : Vector3(v.segment<3>(at + 3));
-    gain.spin = mass * v.segment<3>(at + 6);
-    at += kGain;
+    one.way = semi_implicit() ? Vector3(0.5 * current_step_ * v.segment<3>(at)) : Vector3(v.segment<3>(at + 3));
+    one.spin = mass * v.segment<3>(at + 6);
+    at += kReceived;
   }
 }
 

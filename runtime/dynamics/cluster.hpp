@@ -44,7 +44,7 @@ class Cluster final : public articulated::System, public InMemory {
  public:
   /// `trees` outlive the cluster. It takes its state from them and gives it back.
   /// @param unit   the world's length unit, m: errors of lengths are measured by it
-  /// @param asked  force methods push its trees: see gain()
+  /// @param asked  force methods push its trees: see received()
   Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees, const Accuracy& accuracy, double unit,
           bool asked);
 
@@ -74,13 +74,13 @@ class Cluster final : public articulated::System, public InMemory {
   double reaction_work() const { return works_[3]; }  // J, of the trees' Loads::reaction
   /// Trees with joints that nothing but forces on their links holds, if force methods push them: what these forces gave
   /// each of them in the last step, integrated by the same stages.
-  struct Gain {
+  struct Received {
     Tree* tree;
     Vector3 impulse = Vector3::Zero();  // N*s
     Vector3 way = Vector3::Zero();      // m, of the centre of mass
     Vector3 spin = Vector3::Zero();     // N*m*s, about the centre of mass
   };
-  std::span<const Gain> gains() const { return gains_; }
+  std::span<const Received> received() const { return received_; }
   double next_step() const { return at_.step; }
   void set_next_step(double step) { at_.step = step; }
   /// How many times the tolerance step control may err by, until set anew.
@@ -90,7 +90,7 @@ class Cluster final : public articulated::System, public InMemory {
 
   // --- System
   int positions() const override { return nq_; }
-  int velocities() const override { return gains_at() + kGain * static_cast<int>(gains_.size()); }
+  int velocities() const override { return received_at() + kReceived * static_cast<int>(received_.size()); }
   articulated::Kind kind(int velocity) const override { return kinds_[static_cast<std::size_t>(velocity)]; }
   void acceleration(double t, const articulated::Vector& q, const articulated::Vector& v, double step,
                     articulated::Vector& a) override;
@@ -102,8 +102,8 @@ class Cluster final : public articulated::System, public InMemory {
   }
 
  private:
-  static constexpr int kWorks = 4, kGain = 9;
-  int gains_at() const { return nv_ + kWorks + static_cast<int>(motors_.size()); }
+  static constexpr int kWorks = 4, kReceived = 9;
+  int received_at() const { return nv_ + kWorks + static_cast<int>(motors_.size()); }
   /// A number of v that a motor drives: its place in the whole vector, whose tree, and its place there.
   struct Motor {
     int place;
@@ -118,8 +118,8 @@ class Cluster final : public articulated::System, public InMemory {
   void add_reaction(const Tree& tree, const double* v, const double* a, Powers& powers) const;
   void accelerate_trees(double t, const articulated::Vector& q, const articulated::Vector& v, double step,
                         articulated::Vector& a, Powers& powers);
-  void add_gains(const articulated::Vector& v, articulated::Vector& a) const;
-  void take_gains(const articulated::Vector& v);
+  void add_received(const articulated::Vector& v, articulated::Vector& a) const;
+  void take_received(const articulated::Vector& v);
   void make_integrators();
   bool semi_implicit() const { return accuracy_.scheme == articulated::Scheme::SemiImplicitEuler && !finer_now_; }
   void read_mean();
@@ -138,9 +138,9 @@ class Cluster final : public articulated::System, public InMemory {
   Meter* meter_ = nullptr;
   std::uint64_t units_ = 0;  // of work, an evaluation
   std::pmr::vector<articulated::Kind> kinds_;
-  std::pmr::vector<Motor> motors_;  // their impulses are further coordinates, after the works
-  articulated::Vector torques_;     // (nv_) of motors, at the last stage
-  std::pmr::vector<Gain> gains_;    // per kg these are further coordinates, after the motors' impulses
+  std::pmr::vector<Motor> motors_;       // their impulses are further coordinates, after the works
+  articulated::Vector torques_;          // (nv_) of motors, at the last stage
+  std::pmr::vector<Received> received_;  // per kg these are further coordinates, after the motors' impulses
   std::array<double, kWorks> works_{};
   articulated::Instant at_;
   double current_step_ = 0;

@@ -146,15 +146,15 @@ void SmoothMotion::move_whole(Clustered& one, double time, double h) {
     move_once(one, time, h);
     return impose(trees, measure(trees), wanted);
   }
-  const std::span gains = one.entry->system->gains();
-  for (const Cluster::Gain& gain : gains) gain.tree->whole = going_on({&gain.tree, 1}, gravity, h);
+  const std::span all = one.entry->system->received();
+  for (const Cluster::Received& received : all) received.tree->whole = going_on({&received.tree, 1}, gravity, h);
   move_once(one, time, h);
-  for (const Cluster::Gain& gain : gains) {
-    articulated::Whole wanted = gain.tree->whole;
-    wanted.center += gain.way;
-    wanted.momentum += gain.impulse;
-    wanted.spin += gain.spin;
-    impose({&gain.tree, 1}, measure({&gain.tree, 1}), wanted);
+  for (const Cluster::Received& received : all) {
+    articulated::Whole wanted = received.tree->whole;
+    wanted.center += received.way;
+    wanted.momentum += received.impulse;
+    wanted.spin += received.spin;
+    impose({&received.tree, 1}, measure({&received.tree, 1}), wanted);
   }
 }
 
