@@ -116,30 +116,19 @@ TEST(Motors, OfBallJointsPushAlongWhatTheyAskFor) {
 }
 
 /// Whatever was tried before, the same state has the same accelerations: step control finds no step small enough else.
-TEST(Motors, OfBallJointsDoNotDependOnTheLastSolve) {
-  const auto check = [](Random& random, const Model& model, Data& data, State state, const Loads& loads) {
-    forward_dynamics(model, data, state, loads);
-    for (int i = 0; i < 5; ++i) {
-      state.v += random_forces(random, model.velocities());
-      const Vector warm = forward_dynamics(model, data, state, loads, 0, MotorGuess::Last);
-      const Vector cold = forward_dynamics(model, data, state, loads);
-      EXPECT_LE((warm - cold).cwiseAbs().maxCoeff(), 1e-9 * (1 + cold.cwiseAbs().maxCoeff()));
-    }
-  };
-  for_driven_trees(check, true);
+void check_memory(Random& random, const Model& model, Data& data, State state, const Loads& loads) {
+  forward_dynamics(model, data, state, loads);
+  for (int i = 0; i < 5; ++i) {
+    state.v += random_forces(random, model.velocities());
+    const Vector warm = forward_dynamics(model, data, state, loads, 0, MotorGuess::Last);
+    const Vector cold = forward_dynamics(model, data, state, loads);
+    EXPECT_LE((warm - cold).cwiseAbs().maxCoeff(), 1e-9 * (1 + cold.cwiseAbs().maxCoeff()));
+  }
 }
 
-TEST(Motors, WhatIsRememberedOfTheLastSolveMakesNoDifference) {
-  for_driven_trees([](Random& random, const Model& model, Data& data, State state, const Loads& loads) {
-    forward_dynamics(model, data, state, loads);
-    for (int i = 0; i < 5; ++i) {
-      state.v += random_forces(random, model.velocities());
-      const Vector warm = forward_dynamics(model, data, state, loads, 0, MotorGuess::Last);
-      const Vector cold = forward_dynamics(model, data, state, loads);
-      EXPECT_LE((warm - cold).cwiseAbs().maxCoeff(), 1e-9 * (1 + cold.cwiseAbs().maxCoeff()));
-    }
-  });
-}
+TEST(Motors, OfBallJointsDoNotDependOnTheLastSolve) { for_driven_trees(check_memory, true); }
+
+TEST(Motors, WhatIsRememberedOfTheLastSolveMakesNoDifference) { for_driven_trees(check_memory); }
 
 TEST(Motors, ThatComeToTheirLimitsMakeNoJump) {
   int met = 0;
