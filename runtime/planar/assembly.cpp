@@ -1,6 +1,6 @@
 // Box2D moves links along the tangents of their paths, and then pulls their joints together without changing
 // velocities. Angular momentum and energy of what rotates are lost in this way, and where its sweeps have not
-// converged, links are lifted for nothing. So the sub-step of an assembly that touches nothing is solved again, as
+// converged, links are lifted for nothing. So the sub-step of an assembly that nothing pushes is solved again, as
 // RATTLE does (Andersen 1983): impulses of the joints at the old pose, such that all joints hold at the new one, then
 // impulses at the new pose such that the velocities are allowed there. Gravity acts in halves before and after. Momenta
 // are kept exactly, and the energy errs by the square of the sub-step without drift. Which motors and limits hold
@@ -453,11 +453,6 @@ void Planar::Core::move_assemblies(double dt) {
   if (members_changed) return;  // a handler has changed them in this step
   if (!articulations_known) number_joints();
   for (const std::unique_ptr<Assembly>& one : articulations) one->move(dt);
-}
-
-void Planar::Core::close_joints(double dt) {
-  if (members_changed || !articulations_known) return;
-  for (const std::unique_ptr<Assembly>& one : articulations) one->close(dt);
 }
 
 void Planar::Core::take_back_gains(double dt) {

@@ -1,4 +1,4 @@
-// A sub-step of bodies that joints connect and that touch nothing, solved as a whole and in double precision.
+// A sub-step of bodies that joints connect and that nothing pushes, solved as a whole and in double precision.
 #pragma once
 
 #include "runtime/planar/island.hpp"
@@ -24,10 +24,12 @@ class Planar::Core::Assembly {
   using Vector = JointSystem::Vector;
   /// All that joints connect with a body.
   Assembly(Core& core, BodyIndex first);
-  /// Replaces what Box2D has made of a sub-step. Does nothing where something touches, or no solution is found.
+  /// Replaces what Box2D has made of a sub-step. Does nothing where something pushes it, or no solution is found.
   void move(double dt);
   /// Closes joints that are open, where Box2D has moved the links.
-  void close(double dt);
+  /// @param touching  what touches the links is added to it, as it was before they were moved
+  /// @return          one of the links, if some of them are pressed into something by this
+  FlatBody* close(double dt, std::pmr::vector<Island::Apart>& touching);
   /// Energy that contacts and joints have given it is taken from its motion, where Box2D has moved it.
   void take_back(double dt);
 

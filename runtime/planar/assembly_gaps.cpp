@@ -117,23 +117,23 @@ double Planar::Core::Assembly::energy_about() const {
   return sum;
 }
 
-void Planar::Core::Assembly::close(double dt) {
+FlatBody* Planar::Core::Assembly::close(double dt, std::pmr::vector<Island::Apart>& touching) {
   constexpr std::uint64_t kWork = 20;  // for each joint
   constexpr double kLifts = 0.01;      // of the energy of motion: what this may lift the links by
-  if (!planned_ || core_.finishing) return;
+  if (!planned_ || core_.finishing) return nullptr;
   for (Link& link : links_) {
     link.flat = core_.find(link.body);
     const FlatBody* flat = link.flat;
     if (!flat || flat->fixed || flat->set_apart || flat->solved || !flat->b2->IsAwake() || !is_finite(*flat->b2))
-      return;
+      return nullptr;
   }
   bool any = false;
   for (const Member& member : joints_) {
     const FlatJoint& joint = core_.joints[member.joint];
-    if (!joint.used || joint.serial != member.serial || !joint.b2) return;
+    if (!joint.used || joint.serial != member.serial || !joint.b2) return nullptr;
     any = any || is_open(joint);
   }
-  if (!any) return;
+  if (!any) return nullptr;
   core_.counters.work += kWork * joints_.size();
   load(dt);
   for (std::size_t i = 0; i < links_.size(); ++i) {
@@ -141,15 +141,30 @@ void Planar::Core::Assembly::close(double dt) {
     after_[i] = FlatPose(vector_of(b.GetWorldCenter()), double{b.GetAngle()});
     velocities_[i].setZero();
   }
-  std::pmr::vector<Island::Apart> touching(core_.memory);
+  const auto listed = static_cast<std::ptrdiff_t>(touching.size());
   list_touching(touching);
   close_gaps(kLifts * energy_about());
   for (std::size_t i = 0; i < links_.size(); ++i) put(i);
-  if (std::none_of(touching.begin(), touching.end(), is_deeper)) return;
-  for (FlatBody& flat : core_.slots) flat.gathered = false;
-  Island island(core_, dt);
-  island.gather(*links_.front().flat);
-  island.keep_apart(touching);
+  return std::any_of(touching.begin() + listed, touching.end(), is_deeper) ? links_.front().flat : nullptr;
+}
+
+/// Once all are closed, overlaps are put right once for each island, however many of its assemblies were open.
+void Planar::Core::close_joints(double dt) {
+  if (members_changed || !articulations_known) return;
+  std::pmr::vector<Island::Apart> touching(memory);
+  std::pmr::vector<FlatBody*> pressed(memory);
+  for (const std::unique_ptr<Assembly>& one : articulations)
+    if (FlatBody* link = one->close(dt, touching)) pressed.push_back(link);
+  if (pressed.empty()) return;
+  // A contact between two assemblies counts as it was before the first of them was closed.
+  std::stable_sort(touching.begin(), touching.end(), Island::Apart::sooner);
+  for (FlatBody& flat : slots) flat.gathered = false;
+  for (FlatBody* link : pressed) {
+    if (link->gathered) continue;
+    Island island(*this, dt);
+    island.gather(*link);
+    island.keep_apart(touching);
+  }
 }
 
 }  // namespace breve

@@ -336,14 +336,16 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void order_contacts();
   void order_edges();
 
-  // assembly.cpp: assemblies that touch nothing
+  // assembly.cpp: assemblies that nothing pushes
   class Assembly;
   std::pmr::vector<std::unique_ptr<Assembly>> articulations;  // by their first bodies
   bool articulations_known = false;                           // no body or joint came or went since
   void number_joints();
   void move_assemblies(double dt);
-  void close_joints(double dt);
   void take_back_gains(double dt);
+
+  // assembly_gaps.cpp: those that something pushes
+  void close_joints(double dt);
 
   // landings.cpp: what Box2D's sweeps solve badly
   class Island;

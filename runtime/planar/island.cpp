@@ -85,20 +85,10 @@ bool Planar::Core::Island::make_parts() {
       part.response = std::make_unique<Response>(core_, flat, nullptr);
       if (!part.response->holds()) return false;
       part.v = numbers(static_cast<std::size_t>(part.response->size()));
-      Response::Vector v(part.response->size());
-      for (FlatBody* body : part.response->bodies()) {
-        body->part = index;
-        v.segment<3>(part.response->index_of(*body)) = body->velocity_before();
-      }
-      // Box2D's solver leaves velocities that the joints do not quite allow.
-      Eigen::Map<Response::Vector>(part.v.data(), v.size()) = v + part.response->allowed(v);
-      mover.size = static_cast<int>(v.size());
+      for (FlatBody* body : part.response->bodies()) body->part = index;
+      mover.size = static_cast<int>(part.response->size());
     } else {
       part.v = numbers(6);
-      const Vector3 v = flat->velocity_before();
-      part.v[0] = v[0];
-      part.v[1] = v[1];
-      part.v[5] = v[2];
       mover.inverse_mass = 1 / flat->mass.mass;
       mover.inverse_inertia(2, 2) = u * u / flat->mass.inertia(2, 2);
     }
@@ -107,6 +97,24 @@ bool Planar::Core::Island::make_parts() {
     parts_.push_back(std::move(part));
   }
   return true;
+}
+
+/// All parts have the velocities with which the sub-step began.
+void Planar::Core::Island::take_velocities() {
+  for (Part& part : parts_) {
+    if (!part.response) {
+      const Vector3 v = part.first->velocity_before();
+      part.v[0] = v[0];
+      part.v[1] = v[1];
+      part.v[5] = v[2];
+      continue;
+    }
+    Response::Vector v(part.response->size());
+    for (const FlatBody* body : part.response->bodies())
+      v.segment<3>(part.response->index_of(*body)) = body->velocity_before();
+    // Box2D's solver leaves velocities that the joints do not quite allow.
+    Eigen::Map<Response::Vector>(part.v.data(), v.size()) = v + part.response->allowed(v);
+  }
 }
 
 /// What a script moves gives way to nothing: another mover each time.
@@ -373,6 +381,7 @@ void Planar::Core::Island::write_joints() {
 
 void Planar::Core::Island::solve() {
   if (!make_parts()) return;
+  take_velocities();
   make_contact_rows();
   for (FlatJoint* joint : joints_) add_drives(*joint);
   book_drivers(-1);

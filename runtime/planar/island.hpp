@@ -1,6 +1,7 @@
 // Bodies of a flat world that touch or are joined, solved together for one sub-step as runtime/contact solves them.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "runtime/contact/solver.hpp"
@@ -23,8 +24,11 @@ class Planar::Core::Island {
   struct Apart {
     b2Contact* contact;
     float separations[b2_maxManifoldPoints];
+    /// By addresses, so that a contact is found: nothing depends on this order.
+    static bool sooner(const Apart& a, const Apart& b) { return std::less<>()(a.contact, b.contact); }
   };
   /// Moves bodies so that none of their contacts overlaps deeper than it did; joints stay as open as they are.
+  /// @param before  sorted by `sooner`; of several with one contact the first counts
   void keep_apart(std::span<const Apart> before);
 
  private:
@@ -48,6 +52,7 @@ class Planar::Core::Island {
   void add_joints(const FlatBody& flat);
   std::span<double> numbers(std::size_t count);
   bool make_parts();
+  void take_velocities();
   Part& part_of(const FlatBody& flat) { return parts_[flat.part]; }
   int driver(const FlatBody& flat);
   Response::Vector load_of(const FlatBody& flat, const Vector2& arm, const Vector2& along, double rotation);

@@ -13,12 +13,12 @@ void Planar::Core::Island::aim_apart(std::span<const Apart> before) {
   for (b2Contact* contact : contacts_) {
     b2WorldManifold where;
     contact->GetWorldManifold(&where);
-    const auto known =
-        std::find_if(before.begin(), before.end(), [contact](const Apart& one) { return one.contact == contact; });
+    const auto found = std::lower_bound(before.begin(), before.end(), Apart{contact, {}}, Apart::sooner);
+    const bool known = found != before.end() && found->contact == contact;
     for (int k = 0; k < contact->GetManifold()->pointCount; ++k) {
       contact::Row& row = rows_[next++];
       const double now = double{where.separations[k]};
-      row.bias = std::min(known == before.end() ? now : double{known->separations[k]}, kRests) - now;
+      row.bias = std::min(known ? double{found->separations[k]} : now, kRests) - now;
       row.static_friction = row.dynamic_friction = 0;
     }
   }
