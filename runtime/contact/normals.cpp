@@ -11,24 +11,25 @@ namespace {
 
 NormalRow normal_of(const Point& c) {
   constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-  return {0, c.impulse[0], c.bias, c.softness, c.response.nn, 0, kNoLimit, 0, 0};
+  return {c.impulse[0], c.bias, c.softness, c.response.nn, 0, kNoLimit, 0, 0};
 }
 
 NormalRow normal_of(const PackedScalar& row) {
-  return {0, row.impulse, row.bias, row.softness, row.response, row.lo, row.hi, 0, 0};
+  return {row.impulse, row.bias, row.softness, row.response, row.lo, row.hi, 0, 0};
 }
 
 void push(Workspace& work, std::size_t row, double impulse) {
   const std::size_t n = work.normals.size();
-  const double* const W = &work.normal_answers[row * n];
-  for (std::size_t k = 0; k < n; ++k) work.normals[k].rate += W[k] * impulse;
+  const double* const __restrict W = &work.normal_answers[row * n];
+  double* const __restrict rates = work.normal_rates.data();
+  for (std::size_t k = 0; k < n; ++k) rates[k] += W[k] * impulse;
 }
 
 void visit(Workspace& work, std::size_t i, Moved& moved) {
   NormalRow& row = work.normals[i];
   row.step = 0;
   if (!(row.response > 0)) return;
-  const double error = row.rate + row.softness * row.impulse - row.bias;
+  const double error = work.normal_rates[i] + row.softness * row.impulse - row.bias;
   const double next = std::clamp(row.impulse - error / row.response, row.lo, row.hi);
   const double change = next - row.impulse;
   if (change == 0 || !std::isfinite(next)) return;
@@ -45,6 +46,7 @@ void enter_normals(Workspace& work) {
   work.normals.clear();
   for (const Point& c : work.points) work.normals.push_back(normal_of(c));
   for (const PackedScalar& row : work.scalars) work.normals.push_back(normal_of(row));
+  work.normal_rates.assign(work.normals.size(), 0.0);
   for (std::size_t i = 0; i < work.normals.size(); ++i)
     if (work.normals[i].impulse != 0) push(work, i, work.normals[i].impulse);
 }

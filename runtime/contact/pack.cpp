@@ -68,6 +68,26 @@ void add_response(const double* j, const double* r, int n, LocalMatrix& W) {
   W.s22 += at(2, 2);
 }
 
+/// How many numbers of some rows behind one another there are up to the last column that is not zero.
+int reach_of(const double* j, int rows, int size) {
+  if (j == nullptr) return 0;
+  const auto zero = [=](int column) {
+    for (int k = 0; k < rows; ++k)
+      if (j[k * size + column] != 0) return false;
+    return true;
+  };
+  int reach = size;
+  while (reach > 0 && zero(reach - 1)) --reach;
+  return reach;
+}
+
+/// The first number of a row that is not zero.
+int first_of(const double* j, int reach) {
+  int first = 0;
+  while (first < reach && j[first] == 0) ++first;
+  return first;
+}
+
 void fill(Point& c, const Row& row, const std::pmr::vector<Packed>& movers) {
   c.a = row.a + 1;
   c.b = row.b + 1;
@@ -108,6 +128,10 @@ PackedScalar packed(const ScalarRow& row, const std::pmr::vector<Packed>& movers
   out.ra = row.ra;
   out.jb = row.jb;
   out.rb = row.rb;
+  out.reach_a = reach_of(row.ja, 1, movers[static_cast<std::size_t>(out.a)].size);
+  out.reach_b = reach_of(row.jb, 1, movers[static_cast<std::size_t>(out.b)].size);
+  out.first_a = first_of(row.ja, out.reach_a);
+  out.first_b = first_of(row.jb, out.reach_b);
   out.bias = row.bias;
   out.softness = row.softness;
   out.lo = row.lo;
@@ -120,9 +144,10 @@ PackedScalar packed(const ScalarRow& row, const std::pmr::vector<Packed>& movers
 }
 
 /// u += sign J v.
-void add_velocity(const double* j, const Packed& m, double sign, double u[3]) {
+/// @param reach  columns of J; behind them it is zero
+void add_velocity(const double* j, int reach, const Packed& m, double sign, double u[3]) {
   const double* v = m.now();
-  for (int k = 0; k < 3; ++k) u[k] += sign * dot(j + k * m.size, v, m.size);
+  for (int k = 0; k < 3; ++k) u[k] += sign * dot(j + k * m.size, v, reach);
 }
 
 /// v += R p.
@@ -168,7 +193,10 @@ void pack(std::span<const Mover> movers, std::span<const Row> rows, std::span<co
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
     fill(work.points[i], row, work.movers);
-    work.sides[i] = {row.ja, row.ra, row.jb, row.rb, {}};
+    const Point& c = work.points[i];
+    const int reach_a = reach_of(row.ja, 3, work.movers[static_cast<std::size_t>(c.a)].size);
+    const int reach_b = reach_of(row.jb, 3, work.movers[static_cast<std::size_t>(c.b)].size);
+    work.sides[i] = {row.ja, row.ra, row.jb, row.rb, reach_a, reach_b, {}};
     work.grips[i] = row.dynamic_friction < row.static_friction ? Grip::Unsettled : Grip::Holds;
     velocity(work, i, work.sides[i].free_velocity);
   }
@@ -240,11 +268,11 @@ void velocity(const Workspace& work, std::size_t contact, double u[3]) {
   const Sides& sides = work.sides[contact];
   u[0] = u[1] = u[2] = 0;
   if (sides.ja != nullptr)
-    add_velocity(sides.ja, a, 1, u);
+    add_velocity(sides.ja, sides.reach_a, a, 1, u);
   else
     add_velocity(c, c.arm_a, a, 1, u);
   if (sides.jb != nullptr)
-    add_velocity(sides.jb, b, -1, u);
+    add_velocity(sides.jb, sides.reach_b, b, -1, u);
   else
     add_velocity(c, c.arm_b, b, -1, u);
 }
@@ -280,11 +308,11 @@ double velocity(const Workspace& work, const PackedScalar& row) {
   double u = 0;
   if (row.ja != nullptr) {
     const Packed& a = work.movers[static_cast<std::size_t>(row.a)];
-    u += dot(row.ja, a.now(), a.size);
+    u += dot(row.ja + row.first_a, a.now() + row.first_a, row.reach_a - row.first_a);
   }
   if (row.jb != nullptr) {
     const Packed& b = work.movers[static_cast<std::size_t>(row.b)];
-    u -= dot(row.jb, b.now(), b.size);
+    u -= dot(row.jb + row.first_b, b.now() + row.first_b, row.reach_b - row.first_b);
   }
   return u;
 }

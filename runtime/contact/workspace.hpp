@@ -37,9 +37,11 @@ struct Point {
   double step[3], way[3];  // what the last sweep changed, and where it goes on to
 };
 
-/// A contact's matrices, if a side has them, and the velocity it had without any impulse.
+/// A contact's matrices, if a side has them, and the velocity it had without any impulse. A point of a tree moves with
+/// the joints between it and the root: behind that many numbers, rows of ja and jb are zero.
 struct Sides {
   const double *ja, *ra, *jb, *rb;
+  int reach_a, reach_b;
   double free_velocity[3];
 };
 
@@ -47,6 +49,7 @@ struct Sides {
 struct PackedScalar {
   int a, b;  // packed movers; 0 is the world
   const double *ja, *ra, *jb, *rb;
+  int first_a, reach_a, first_b, reach_b;  // ja and jb are zero before and behind these
   double bias, softness, lo, hi;
   double response;  // softness included; 0: nothing can move it
   double impulse;
@@ -71,9 +74,15 @@ struct Slope {
 
 /// A contact's normal, or a scalar row, as sweeps without friction read it.
 struct NormalRow {
-  double rate;  // its velocity
   double impulse, bias, softness, response, lo, hi;
   double step, way;
+};
+
+/// A row of the only mover that rows move.
+struct LoneRow {
+  const double *j, *r;
+  int first, reach;  // j is zero before and behind these
+  bool on_a;         // the mover is the first of the row's two
 };
 
 struct Workspace {
@@ -97,7 +106,9 @@ struct Workspace {
         answers(memory),
         rates(memory),
         normal_answers(memory),
-        normals(memory) {}
+        normal_rates(memory),
+        normals(memory),
+        lone(memory) {}
   std::pmr::vector<Packed> movers;
   std::pmr::vector<double> began;  // velocities of the trees without any impulse
   std::pmr::vector<Point> points;
@@ -117,7 +128,9 @@ struct Workspace {
   std::pmr::vector<double> rates;    // velocities at the rows: three a point, then one a scalar row
   bool by_normals = false;           // see normals.hpp:
   std::pmr::vector<double> normal_answers;
+  std::pmr::vector<double> normal_rates;  // their velocities
   std::pmr::vector<NormalRow> normals;
+  std::pmr::vector<LoneRow> lone;
 };
 
 }  // namespace breve::contact
