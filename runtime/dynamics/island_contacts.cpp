@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "runtime/dynamics/corners.hpp"
+#include "runtime/dynamics/joint_reader.hpp"
 
 namespace breve::island {
 
@@ -327,10 +328,10 @@ void Contacts::find_bounds() {
 
 bool Contacts::find_passed(double far) {
   bool any = false;
+  JointReader joints(state_.core);
   for (Bound& bound : bounds_) {
     if (bound.rests || bound.held) continue;
-    const double gap =
-        bound.sign * (state_.core.read_position(state_.core.joints[bound.joint])[bound.axis] - bound.limit);
+    const double gap = bound.sign * (joints.position(bound.joint)[bound.axis] - bound.limit);
     bound.rests = gap < std::min(bound.gap, 0.0) - far * bound.unit;
     any = any || bound.rests;
   }

@@ -7,6 +7,7 @@
 
 #include "runtime/articulated/kinematics.hpp"
 #include "runtime/dynamics/island_energy.hpp"
+#include "runtime/dynamics/joint_reader.hpp"
 
 namespace breve::island {
 
@@ -194,10 +195,10 @@ void Positions::put_back(double h, bool struck) {
 double Positions::put_back_once(double h, bool struck, Rates rates) {
   scalar_pushes_.clear();
   double fastest = 0, farthest = 0;
+  JointReader joints(state_.core);
   for (std::size_t i = 0; i < rows_.limits(); ++i) {
     const Bound& bound = rows_.limit(i).bound;
-    const double gap =
-        bound.sign * (state_.core.read_position(state_.core.joints[bound.joint])[bound.axis] - bound.limit);
+    const double gap = bound.sign * (joints.position(bound.joint)[bound.axis] - bound.limit);
     scalar_pushes_.push_back((std::min(bound.gap, 0.0) - gap) / h);
     fastest = std::max(fastest, scalar_pushes_.back());
     farthest = std::max(farthest, scalar_pushes_.back() * h / bound.unit);

@@ -10,6 +10,7 @@
 #include "runtime/articulated/kinematics.hpp"
 #include "runtime/dynamics/island_energy.hpp"
 #include "runtime/dynamics/jacobians.hpp"
+#include "runtime/dynamics/joint_reader.hpp"
 
 namespace breve::island {
 
@@ -235,10 +236,11 @@ bool Prediction::threw() const {
 /// is not the force that holds it: nothing is, when the joint has just come to stand there.
 bool Prediction::limits_swing() const {
   constexpr double kFar = 0.02;  // rad, or the world's length unit
-  return std::any_of(contacts_.bounds().begin(), contacts_.bounds().end(), [this](const Bound& bound) {
+  JointReader joints(state_.core);
+  return std::any_of(contacts_.bounds().begin(), contacts_.bounds().end(), [&](const Bound& bound) {
     if (!bound.rests || bound.held) return false;
-    const double position = state_.core.read_position(state_.core.joints[bound.joint])[bound.axis];
-    return bound.sign * (position - bound.limit) < std::min(bound.gap, 0.0) - kFar * bound.unit;
+    const double gap = bound.sign * (joints.position(bound.joint)[bound.axis] - bound.limit);
+    return gap < std::min(bound.gap, 0.0) - kFar * bound.unit;
   });
 }
 

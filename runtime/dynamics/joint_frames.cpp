@@ -39,6 +39,14 @@ Eigen::Matrix3d ball_rates(const JointAxes& axes, const JointVector& position) {
   return rates;
 }
 
+// A volume of the three columns of rates below which their inverse is found with care: near the singular angle.
+constexpr double kSingular = 1e-3;
+
+/// A row of the inverse of rates, times their volume.
+Vector3 dual(const Eigen::Matrix3d& rates, int axis) {
+  return rates.col((axis + 1) % 3).cross(rates.col((axis + 2) % 3));
+}
+
 /// The model's ball velocity: spin of the tree's child relative to its parent in the child's axes, from the spin of the
 /// joint's child relative to its parent in the joint's parent's axes; as a matrix.
 Eigen::Matrix3d to_model(const JointDescription& is, bool flipped, const double* q) {
@@ -116,7 +124,10 @@ JointVector joint_velocity(const JointDescription& is, bool flipped, const doubl
     case JointKind::Ball: {
       const Vector3 spin = to_model(is, flipped, q).transpose() * Vector3(v[0], v[1], v[2]);
       const Eigen::Matrix3d rates = ball_rates(axes_of(is), joint_position(is, flipped, q));
-      return rates.fullPivLu().solve(spin);
+      const Vector3 first = dual(rates, 0);
+      const double volume = first.dot(rates.col(0));
+      if (!(std::abs(volume) > kSingular)) return rates.fullPivLu().solve(spin);
+      return Vector3(first.dot(spin), dual(rates, 1).dot(spin), dual(rates, 2).dot(spin)) / volume;
     }
     case JointKind::Fixed: break;
   }
@@ -126,9 +137,13 @@ JointVector joint_velocity(const JointDescription& is, bool flipped, const doubl
 Vector3 joint_velocity_row(const JointDescription& is, bool flipped, const double* q, int axis) {
   if (is.kind != JointKind::Ball) return Vector3::Unit(is.kind == JointKind::Universal && flipped ? 1 - axis : axis);
   const Eigen::Matrix3d spins = to_model(is, flipped, q).transpose();
-  const auto rates = ball_rates(axes_of(is), joint_position(is, flipped, q)).fullPivLu();
+  const Eigen::Matrix3d rates = ball_rates(axes_of(is), joint_position(is, flipped, q));
+  const Vector3 across = dual(rates, axis);
+  const double volume = across.dot(rates.col(axis));
+  if (std::abs(volume) > kSingular) return spins.transpose() * across / volume;
+  const auto careful = rates.fullPivLu();
   Vector3 row;
-  for (int k = 0; k < 3; ++k) row[k] = rates.solve(spins.col(k))[axis];
+  for (int k = 0; k < 3; ++k) row[k] = careful.solve(spins.col(k))[axis];
   return row;
 }
 
