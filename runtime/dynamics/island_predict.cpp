@@ -232,15 +232,19 @@ bool Prediction::threw() const {
   return moved > books_.smooth_kinetic() + (driven ? kDriven : kThrown) * books_.predicted();
 }
 
-/// After smooth motion: whether a joint that stands at its limit swung so far beyond it that what was predicted there
-/// is not the force that holds it: nothing is, when the joint has just come to stand there.
-bool Prediction::limits_swing() const {
-  constexpr double kFar = 0.02;  // rad, or the world's length unit
+/// After smooth motion of h seconds: whether a joint that stands at its limit swung so far beyond it that what was
+/// predicted there is not the force that holds it: nothing is, when the joint has just come to stand there. What rows
+/// change moves it back, to second order; where impacts are not located, that is all there is for a joint that arrives
+/// fast, and the way of the speed at which it came says nothing of forces.
+bool Prediction::limits_swing(double h) const {
+  constexpr double kFar = 0.02, kFarUnlocated = 0.1;  // rad, or the world's length unit
+  const bool located = state_.accuracy.locate_impacts;
+  const double far = located ? kFar : kFarUnlocated, arrives = located ? 0 : h;
   JointReader joints(state_.core);
   return std::any_of(contacts_.bounds().begin(), contacts_.bounds().end(), [&](const Bound& bound) {
     if (!bound.rests || bound.held) return false;
     const double gap = bound.sign * (joints.position(bound.joint)[bound.axis] - bound.limit);
-    return gap < std::min(bound.gap, 0.0) - kFar * bound.unit;
+    return gap < std::min(bound.gap, 0.0) + arrives * std::min(bound.rate, 0.0) - far * bound.unit;
   });
 }
 

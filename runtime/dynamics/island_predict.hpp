@@ -17,7 +17,7 @@ class Prediction {
   void make(double h);
   bool misled(double h);
   bool threw() const;
-  bool limits_swing() const;
+  bool limits_swing(double h) const;
   bool loops_swing(double h) const;
   void learn(double h, bool loops);
   void forget();

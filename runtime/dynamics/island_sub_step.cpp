@@ -131,7 +131,7 @@ void SubStep::solve_moved(double time, double h) {
 void SubStep::solve_as_learned(double time, double h) {
   constexpr double kThrown = 2, kLifted = 0.01;  // times the motion of the first solution; of weight()
   const bool loops = by_rows_ && prediction_.loops_swing(h);
-  if (!loops && !prediction_.limits_swing()) return;
+  if (!loops && !prediction_.limits_swing(h)) return;
   const double most = kThrown * motion_of_trees(state_) + kLifted * weight(state_);
   state_.restore();
   prediction_.learn(h, loops);
