@@ -28,7 +28,7 @@ struct LinearSolves {
 double solve_direct(Workspace& work, double tolerance, LinearSolves& solves, bool& solved);
 
 /// Whether there are enough solves for the interior-point method. It begins from far: fewer lead nowhere, and large
-/// islands take more, unless nothing has an impulse yet: such bodies nearly always begin at rest.
+/// islands take more, unless nothing has an impulse yet: the bodies then nearly always begin at rest.
 bool enough_from_far(const Workspace& work, const LinearSolves& solves);
 
 /// Whether Newton's method may converge from the island's impulses, whose violation is `left`, m/s.

@@ -49,6 +49,7 @@ void BandMatrix::clear() const { std::fill_n(numbers_at_, numbers_, 0.0); }
 
 namespace {
 
+/// Gaussian elimination with partial pivoting, panel by panel.
 class Factorization {
  public:
   Factorization(const BandMatrix& matrix, std::span<int> pivots, std::span<int> ends)
