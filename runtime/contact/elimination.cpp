@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/contact/lanes.hpp"
+
 namespace breve::contact {
 
 namespace {
@@ -124,12 +126,55 @@ class Factorization {
 
 }  // namespace
 
+namespace {
+
+/// The same for a small matrix, column by column, rows being exchanged as a whole.
+bool factorize_small(const BandMatrix& matrix, std::span<int> pivots) {
+  const int n = matrix.size();
+  for (int c = 0; c < n; ++c) {
+    int pivot = c;
+    for (int i = c + 1; i < n; ++i)
+      if (std::abs(matrix.row(i)[c]) > std::abs(matrix.row(pivot)[c])) pivot = i;
+    pivots[static_cast<std::size_t>(c)] = pivot;
+    double* const top = matrix.row(c);
+    if (pivot != c) std::swap_ranges(top, top + n, matrix.row(pivot));
+    if (!std::isfinite(top[c]) || top[c] == 0) return false;
+    const double inverse = 1 / top[c];
+    for (int i = c + 1; i < n; ++i) {
+      double* const line = matrix.row(i);
+      if (line[c] == 0) continue;
+      line[c] *= inverse;
+      add_multiple(-line[c], top + c + 1, n - c - 1, line + c + 1);
+    }
+  }
+  return true;
+}
+
+void substitute_small(const BandMatrix& factors, std::span<const int> pivots, double* b) {
+  const int n = factors.size();
+  for (int c = 0; c < n; ++c) std::swap(b[c], b[pivots[static_cast<std::size_t>(c)]]);
+  for (int i = 1; i < n; ++i) {
+    const double* row = factors.row(i);
+    for (int k = 0; k < i; ++k) b[i] -= row[k] * b[k];
+  }
+  for (int i = n - 1; i >= 0; --i) {
+    const double* row = factors.row(i);
+    double sum = b[i];
+    for (int k = i + 1; k < n; ++k) sum -= row[k] * b[k];
+    b[i] = sum / row[i];
+  }
+}
+
+}  // namespace
+
 bool factorize(const BandMatrix& matrix, std::span<int> pivots, std::span<int> ends) {
+  if (matrix.small()) return factorize_small(matrix, pivots);
   return Factorization(matrix, pivots, ends).run();
 }
 
 void substitute(const BandMatrix& factors, std::span<const int> pivots, std::span<const int> ends,
                 std::span<double> b) {
+  if (factors.small()) return substitute_small(factors, pivots, b.data());
   const int n = factors.size();
   const auto at = [&](int i) -> double& { return b[static_cast<std::size_t>(i)]; };
   for (int k = 0; k < n; k += kPanel) {

@@ -18,11 +18,14 @@ class BandMatrix {
 
   int size() const { return size_; }
   int band() const { return band_; }
+  /// It is stored whole, and is so small that the nearest cache holds it.
+  bool small() const { return band_ == size_ && size_ <= kSmall; }
   /// Number k of it is at [k], for those that are stored.
   double* row(int i) const { return numbers_at_ + shift_ + static_cast<std::ptrdiff_t>(i) * stride_; }
   void clear() const;
 
  private:
+  static constexpr int kSmall = 48;
   int size_ = 0, band_ = 0;
   std::ptrdiff_t stride_ = 0, shift_ = 0;
   std::size_t numbers_ = 0;

@@ -14,6 +14,32 @@ namespace {
 
 constexpr int kMostVelocities = 3000;  // beyond it the matrix is too large: leave the island to the sweeps
 
+/// D J of a side with rows of `size` numbers, of which `count` may be other than zero.
+void weigh(const Slope& D, const double* j, int size, int count, double* n, double* t1, double* t2) {
+  const auto pair = [](double a, Lanes x, double b, Lanes y, double c, Lanes z) {
+    return both(a) * x + both(b) * y + both(c) * z;
+  };
+  int k = 0;
+  for (; k + 1 < count; k += 2) {
+    const Lanes j0 = load(j + k), j1 = load(j + size + k), j2 = load(j + 2 * size + k);
+    store(n + k, pair(D.nn, j0, D.n1, j1, D.n2, j2));
+    store(t1 + k, pair(D.t1n, j0, D.t11, j1, D.t12, j2));
+    store(t2 + k, pair(D.t2n, j0, D.t21, j1, D.t22, j2));
+  }
+  if (k == count) return;
+  const double j0 = j[k], j1 = j[size + k], j2 = j[2 * size + k];
+  n[k] = D.nn * j0 + D.n1 * j1 + D.n2 * j2;
+  t1[k] = D.t1n * j0 + D.t11 * j1 + D.t12 * j2;
+  t2[k] = D.t2n * j0 + D.t21 * j1 + D.t22 * j2;
+}
+
+/// y += a p + b q + c r, for n numbers.
+void add_multiples(Lanes a, const double* p, Lanes b, const double* q, Lanes c, const double* r, int n, double* y) {
+  int k = 0;
+  for (; k + 1 < n; k += 2) store(y + k, load(y + k) + (a * load(p + k) + b * load(q + k) + c * load(r + k)));
+  if (k < n) y[k] += a[0] * p[k] + b[0] * q[k] + c[0] * r[k];
+}
+
 }  // namespace
 
 Equations::Equations(Workspace& work) : work_(work), rows_(3 * work.points.size() + work.scalars.size()) {
@@ -165,23 +191,17 @@ void Equations::add_point(std::size_t point, const Slope& D) {
     const SideMatrices& J = sides[y];
     const int column = work_.indices[static_cast<std::size_t>(movers[y])];
     // A point of a tree moves with the joints between it and the root: the columns behind them are zero.
+    const int reach = y == 0 ? own.reach_a : own.reach_b;
+    const int count = reach > 0 ? reach : J.size;
     double *const n = columns_[0], *const t1 = columns_[1], *const t2 = columns_[2];
-    int count = 0;
-    for (int k = 0; k < J.size; ++k) {
-      const double j0 = J.j[k], j1 = J.j[J.size + k], j2 = J.j[2 * J.size + k];
-      n[k] = D.nn * j0 + D.n1 * j1 + D.n2 * j2;
-      t1[k] = D.t1n * j0 + D.t11 * j1 + D.t12 * j2;
-      t2[k] = D.t2n * j0 + D.t21 * j1 + D.t22 * j2;
-      if (j0 != 0 || j1 != 0 || j2 != 0) count = k + 1;
-    }
+    weigh(D, J.j, J.size, count, n, t1, t2);
     for (int x = 0; x < 2; ++x) {
       const SideMatrices& R = sides[x];
       const int row = work_.indices[static_cast<std::size_t>(movers[x])];
       const double sign = x == y ? 1 : -1;
       for (int i = 0; i < R.size; ++i) {
         const double r0 = sign * R.r[i], r1 = sign * R.r[R.size + i], r2 = sign * R.r[2 * R.size + i];
-        double* __restrict line = matrix_.row(row + i) + column;
-        for (int k = 0; k < count; ++k) line[k] += r0 * n[k] + r1 * t1[k] + r2 * t2[k];
+        add_multiples(both(r0), n, both(r1), t1, both(r2), t2, count, matrix_.row(row + i) + column);
       }
     }
   }
@@ -217,11 +237,9 @@ void Equations::add_scalar(std::size_t scalar, double slope) {
       const int top = work_.indices[static_cast<std::size_t>(movers[x])],
                 left = work_.indices[static_cast<std::size_t>(movers[y])];
       const double sign = x == y ? slope : -slope;
-      for (int i = 0; i < work_.movers[static_cast<std::size_t>(movers[x])].size; ++i) {
-        const double yields = sign * r[x][i];
-        double* line = matrix_.row(top + i) + left;
-        for (int k = 0; k < work_.movers[static_cast<std::size_t>(movers[y])].size; ++k) line[k] += yields * j[y][k];
-      }
+      const int first = y == 0 ? row.first_a : row.first_b, reach = y == 0 ? row.reach_a : row.reach_b;
+      for (int i = 0; i < work_.movers[static_cast<std::size_t>(movers[x])].size; ++i)
+        add_multiple(sign * r[x][i], j[y] + first, reach - first, matrix_.row(top + i) + left + first);
     }
 }
 

@@ -20,9 +20,7 @@ NormalRow normal_of(const PackedScalar& row) {
 
 void push(Workspace& work, std::size_t row, double impulse) {
   const std::size_t n = work.normals.size();
-  const double* const __restrict W = &work.normal_answers[row * n];
-  double* const __restrict rates = work.normal_rates.data();
-  for (std::size_t k = 0; k < n; ++k) rates[k] += W[k] * impulse;
+  add_multiple(impulse, &work.normal_answers[row * n], static_cast<int>(n), work.normal_rates.data());
 }
 
 void visit(Workspace& work, std::size_t i, Moved& moved) {

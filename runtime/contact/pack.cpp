@@ -143,18 +143,34 @@ PackedScalar packed(const ScalarRow& row, const std::pmr::vector<Packed>& movers
   return out;
 }
 
-/// u += sign J v.
-/// @param reach  columns of J; behind them it is zero
-void add_velocity(const double* j, int reach, const Packed& m, double sign, double u[3]) {
-  const double* v = m.now();
-  for (int k = 0; k < 3; ++k) u[k] += sign * dot(j + k * m.size, v, reach);
+/// Notes the columns of J, as far as it reaches. @return where they begin
+std::size_t add_columns(const double* j, int reach, int size, std::pmr::vector<Column>& columns) {
+  const std::size_t first = columns.size();
+  for (int k = 0; k < reach; ++k) columns.push_back({Lanes{j[k], j[size + k]}, Lanes{j[2 * size + k], 0}});
+  return first;
 }
 
-/// v += R p.
-void add_push(const double* r, Packed& m, double p0, double p1, double p2) {
-  double* v = m.now();
-  const int n = m.size;
-  for (int i = 0; i < n; ++i) v[i] += r[i] * p0 + r[n + i] * p1 + r[2 * n + i] * p2;
+/// u += sign J v.
+/// @param reach  columns of J; behind them it is zero
+void add_velocity(const Column* j, int reach, const Packed& m, double sign, double u[3]) {
+  const double* v = m.now();
+  Lanes first{}, second{};
+  for (int k = 0; k < reach; ++k) {
+    first += j[k].first * both(v[k]);
+    second += j[k].second * both(v[k]);
+  }
+  u[0] += sign * first[0];
+  u[1] += sign * first[1];
+  u[2] += sign * second[0];
+}
+
+/// v += R p, R being three columns of n numbers.
+void push_columns(const double* r, int n, const double p[3], double* v) {
+  const double *s = r + n, *t = s + n;
+  const Lanes p0 = both(p[0]), p1 = both(p[1]), p2 = both(p[2]);
+  int i = 0;
+  for (; i + 1 < n; i += 2) store(v + i, load(v + i) + (load(r + i) * p0 + load(s + i) * p1 + load(t + i) * p2));
+  if (i < n) v[i] += r[i] * p[0] + s[i] * p[1] + t[i] * p[2];
 }
 
 /// Velocity of the point of a side with an arm, added with a sign.
@@ -185,6 +201,7 @@ void pack(std::span<const Mover> movers, std::span<const Row> rows, std::span<co
     if (!now.free && now.source != nullptr) work.began.insert(work.began.end(), now.source, now.source + now.size);
   }
   work.has_plain = false;
+  work.columns.clear();
   work.answers.clear();
   work.normal_answers.clear();
   work.points.resize(rows.size());
@@ -194,9 +211,12 @@ void pack(std::span<const Mover> movers, std::span<const Row> rows, std::span<co
     const Row& row = rows[i];
     fill(work.points[i], row, work.movers);
     const Point& c = work.points[i];
-    const int reach_a = reach_of(row.ja, 3, work.movers[static_cast<std::size_t>(c.a)].size);
-    const int reach_b = reach_of(row.jb, 3, work.movers[static_cast<std::size_t>(c.b)].size);
-    work.sides[i] = {row.ja, row.ra, row.jb, row.rb, reach_a, reach_b, {}};
+    const int size_a = work.movers[static_cast<std::size_t>(c.a)].size;
+    const int size_b = work.movers[static_cast<std::size_t>(c.b)].size;
+    const int reach_a = reach_of(row.ja, 3, size_a), reach_b = reach_of(row.jb, 3, size_b);
+    work.sides[i] = {row.ja, row.ra, row.jb, row.rb, reach_a, reach_b, 0, 0, {}};
+    work.sides[i].columns_a = add_columns(row.ja, reach_a, size_a, work.columns);
+    work.sides[i].columns_b = add_columns(row.jb, reach_b, size_b, work.columns);
     work.grips[i] = row.dynamic_friction < row.static_friction ? Grip::Unsettled : Grip::Holds;
     velocity(work, i, work.sides[i].free_velocity);
   }
@@ -268,21 +288,19 @@ void velocity(const Workspace& work, std::size_t contact, double u[3]) {
   const Sides& sides = work.sides[contact];
   u[0] = u[1] = u[2] = 0;
   if (sides.ja != nullptr)
-    add_velocity(sides.ja, sides.reach_a, a, 1, u);
-  else
+    add_velocity(&work.columns[sides.columns_a], sides.reach_a, a, 1, u);
+  else if (c.a != 0)
     add_velocity(c, c.arm_a, a, 1, u);
   if (sides.jb != nullptr)
-    add_velocity(sides.jb, sides.reach_b, b, -1, u);
-  else
+    add_velocity(&work.columns[sides.columns_b], sides.reach_b, b, -1, u);
+  else if (c.b != 0)
     add_velocity(c, c.arm_b, b, -1, u);
 }
 
 void push(Workspace& work, std::size_t contact, const double p[3]) {
   if (work.condensed) {
     const std::size_t n = work.rates.size();
-    const double* W = &work.answers[3 * contact * n];
-    double* u = work.rates.data();
-    for (std::size_t i = 0; i < n; ++i) u[i] += W[i] * p[0] + W[n + i] * p[1] + W[2 * n + i] * p[2];
+    push_columns(&work.answers[3 * contact * n], static_cast<int>(n), p, work.rates.data());
     return;
   }
   const Point& c = work.points[contact];
@@ -290,17 +308,21 @@ void push(Workspace& work, std::size_t contact, const double p[3]) {
   Packed& b = work.movers[static_cast<std::size_t>(c.b)];
   if (c.plain) return plain_push(c, a, b, p);
   const Sides& sides = work.sides[contact];
-  const double x = c.normal[0] * p[0] + c.tangent1[0] * p[1] + c.tangent2[0] * p[2];
-  const double y = c.normal[1] * p[0] + c.tangent1[1] * p[1] + c.tangent2[1] * p[2];
-  const double z = c.normal[2] * p[0] + c.tangent1[2] * p[1] + c.tangent2[2] * p[2];
+  const auto by_arm = [&](Packed& m, const double arm[3], double sign) {
+    const double x = c.normal[0] * p[0] + c.tangent1[0] * p[1] + c.tangent2[0] * p[2];
+    const double y = c.normal[1] * p[0] + c.tangent1[1] * p[1] + c.tangent2[1] * p[2];
+    const double z = c.normal[2] * p[0] + c.tangent1[2] * p[1] + c.tangent2[2] * p[2];
+    plain_push(m, arm, sign * x, sign * y, sign * z);
+  };
   if (sides.ja != nullptr)
-    add_push(sides.ra, a, p[0], p[1], p[2]);
-  else
-    plain_push(a, c.arm_a, x, y, z);
+    push_columns(sides.ra, a.size, p, a.now());
+  else if (c.a != 0)
+    by_arm(a, c.arm_a, 1);
+  const double opposite[3] = {-p[0], -p[1], -p[2]};
   if (sides.jb != nullptr)
-    add_push(sides.rb, b, -p[0], -p[1], -p[2]);
-  else
-    plain_push(b, c.arm_b, -x, -y, -z);
+    push_columns(sides.rb, b.size, opposite, b.now());
+  else if (c.b != 0)
+    by_arm(b, c.arm_b, -1);
 }
 
 double velocity(const Workspace& work, const PackedScalar& row) {
@@ -320,15 +342,13 @@ double velocity(const Workspace& work, const PackedScalar& row) {
 void push(Workspace& work, const PackedScalar& row, double impulse) {
   if (work.condensed) {
     const std::size_t n = work.rates.size();
-    const double* W = &work.answers[row_of(work, row) * n];
-    for (std::size_t i = 0; i < n; ++i) work.rates[i] += W[i] * impulse;
+    add_multiple(impulse, &work.answers[row_of(work, row) * n], static_cast<int>(n), work.rates.data());
     return;
   }
   const auto add = [&](int mover, const double* r, double sign) {
     if (r == nullptr) return;
     Packed& m = work.movers[static_cast<std::size_t>(mover)];
-    double* v = m.now();
-    for (int i = 0; i < m.size; ++i) v[i] += r[i] * (sign * impulse);
+    add_multiple(sign * impulse, r, m.size, m.now());
   };
   add(row.a, row.ra, 1);
   add(row.b, row.rb, -1);

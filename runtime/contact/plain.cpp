@@ -11,8 +11,6 @@ namespace breve::contact {
 
 namespace {
 
-Lanes both(double number) { return Lanes{number, number}; }
-
 struct Velocities {
   Lanes v[6];
   void read(const Packed& a, const Packed& b) {

@@ -4,13 +4,14 @@
 
 #include <cstddef>
 
+#include "runtime/contact/lanes.hpp"
+
 namespace breve::contact {
 
 struct Workspace;
 
-/// Numbers of a contact's two bodies; those of the second have the opposite sign where it feels the opposite impulse.
-using Lanes = double __attribute__((vector_size(16)));
-
+/// Lanes hold numbers of its two bodies; those of the second have the opposite sign where it feels the opposite
+/// impulse.
 struct PlainPoint {
   Lanes arm[3];            // m
   Lanes mass;              // inverse

@@ -1,6 +1,7 @@
 // What the contact solver keeps between calls so that it allocates nothing: rows as its loops read them, packed.
 #pragma once
 
+#include <cstddef>
 #include <memory_resource>
 #include <utility>
 #include <vector>
@@ -37,11 +38,18 @@ struct Point {
   double step[3], way[3];  // what the last sweep changed, and where it goes on to
 };
 
+/// What one number of a mover's v adds to the velocity at a point: along the normal and the first tangent, and along
+/// the second tangent and nothing.
+struct Column {
+  Lanes first, second;
+};
+
 /// A contact's matrices, if a side has them, and the velocity it had without any impulse. A point of a tree moves with
 /// the joints between it and the root: behind that many numbers, rows of ja and jb are zero.
 struct Sides {
   const double *ja, *ra, *jb, *rb;
   int reach_a, reach_b;
+  std::size_t columns_a, columns_b;  // of ja and jb, as far as they reach, in Workspace::columns
   double free_velocity[3];
 };
 
@@ -92,6 +100,7 @@ struct Workspace {
         points(memory),
         plain(memory),
         sides(memory),
+        columns(memory),
         scalars(memory),
         grips(memory),
         numbers(memory),
@@ -114,6 +123,7 @@ struct Workspace {
   std::pmr::vector<Point> points;
   std::pmr::vector<PlainPoint> plain;  // the same for sweeps, where they were asked for
   std::pmr::vector<Sides> sides;
+  std::pmr::vector<Column> columns;
   std::pmr::vector<PackedScalar> scalars;
   std::pmr::vector<Grip> grips;
   std::pmr::vector<double> numbers;  // of the direct solver
