@@ -22,10 +22,12 @@ struct LinearSolves {
 
 /// Solve the packed island from the impulses it has. Velocities and impulses of `work` are those of the best iterate,
 /// consistent with each other, inside cones and bounds.
+/// @param lean    points without an impulse may be set aside meanwhile: two solutions of one island then differ by as
+///                much as the tolerance lets them
 /// @param solves  grows; where they are spent, the best of what they gave is the result
 /// @param solved  whether the violation is within the tolerance, or as near to it as round-off allows
 /// @return        the violation left, m/s
-double solve_direct(Workspace& work, double tolerance, LinearSolves& solves, bool& solved);
+double solve_direct(Workspace& work, double tolerance, bool lean, LinearSolves& solves, bool& solved);
 
 /// Whether there are enough solves for the interior-point method. It begins from far: fewer lead nowhere, and large
 /// islands take more, unless nothing has an impulse yet: the bodies then nearly always begin at rest.

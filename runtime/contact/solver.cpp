@@ -59,7 +59,7 @@ void solve_directly(Workspace& work, const SolveSettings& settings, double most,
     report.direct = report.residual <= attainable(work, settings.tolerance);
     if (report.direct || !within_reach(work, report.residual)) return;
   }
-  report.residual = solve_direct(work, settings.tolerance, solves, report.direct);
+  report.residual = solve_direct(work, settings.tolerance, settings.lean, solves, report.direct);
   if (!report.direct && !moves) {
     // The operations that are left may go into more sweeps than there would be without a direct solution.
     constexpr double kPatience = 3.3e5;  // operations, times the share, that there are in any case
@@ -67,7 +67,7 @@ void solve_directly(Workspace& work, const SolveSettings& settings, double most,
     const int sweeps = std::max(settings.iterations,
                                 static_cast<int>(std::min<double>(left / sweep_operations(work), kPatientSweeps)));
     run_sweeps(work, sweeps, settings.tolerance * 0.1, settings.meter, report);
-    report.residual = solve_direct(work, settings.tolerance, solves, report.direct);  // from nearer
+    report.residual = solve_direct(work, settings.tolerance, settings.lean, solves, report.direct);  // from nearer
   }
   report.newton += solves.made;
 }

@@ -55,6 +55,7 @@ struct SolveSettings {
   int iterations = 10;          // sweeps of the iterative solver; an upper bound, also of its share of a direct solve
   bool direct = false;          // to `tolerance`, by Newton's method, and sweeps where it fails
   double tolerance = 1e-9;      // m/s; sweeps end early when no contact's velocity changes by more
+  bool lean = false;            // a direct solution sets points without an impulse aside
   double direct_share = 1e300;  // a direct solution only where its operations, counted before, are at most this many
                                 // times those of the sweeps
   double direct_most = 0;       // operations that a direct solution may take in any case

@@ -112,6 +112,10 @@ struct Workspace {
         saved(memory),
         earlier(memory),
         biases(memory),
+        all_points(memory),
+        all_sides(memory),
+        kept(memory),
+        called(memory),
         answers(memory),
         rates(memory),
         normal_answers(memory),
@@ -132,6 +136,10 @@ struct Workspace {
   std::pmr::vector<int> order, firsts;  // of impacts in groups; of an elimination
   std::pmr::vector<std::pair<int, int>> neighbors;
   std::pmr::vector<double> saved, earlier, biases;
+  std::pmr::vector<Point> all_points;  // see aside.hpp: all of them; the places among these of those that are left,
+  std::pmr::vector<Sides> all_sides;
+  std::pmr::vector<std::size_t> kept;
+  std::pmr::vector<char> called;  // and which are not set aside again
   bool has_plain = false;
   bool condensed = false;            // see condensed.hpp:
   std::pmr::vector<double> answers;  // W, symmetric, row by row

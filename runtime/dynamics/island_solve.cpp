@@ -88,6 +88,8 @@ void Solver::solve_once() {
   // other step is cheap, would make the first one of a pyramid more than ten times as long as those after it.
   constexpr double kBurdened = 2e6, kStanding = 5e7, kStandingOnFast = 1.8e7;
   settings.direct = fast == 0;
+  // How loops close that are left to the rows depends on their last digits.
+  settings.lean = !state_.accuracy.direct && !state_.has_loops();
   settings.direct_share = direct_share();
   if (burdened()) settings.direct_most = kBurdened;
   if (stands()) settings.direct_most = state_.accuracy.direct ? kStanding : kStandingOnFast;
