@@ -22,6 +22,8 @@ class System {
   virtual int positions() const = 0;          // numbers in q
   virtual int velocities() const = 0;         // numbers in v and in tangents
   virtual Kind kind(int velocity) const = 0;  // of each tangent direction
+  /// Along this tangent direction springs may pull, or other forces that go with the way.
+  virtual bool sprung(int velocity) const { return kind(velocity) != Kind::Ledger; }
 
   /// a (nv): the acceleration at q, v, t. With `step` above 0 stiff internal forces may be treated as linearly implicit
   /// over a step of that length; a is then its mean acceleration.

@@ -39,6 +39,7 @@ Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees
       accuracy_(accuracy),
       unit_(unit),
       kinds_(memory),
+      sprung_(memory),
       motors_(memory),
       received_(memory) {
   for (std::size_t t = 0; t < trees_.size(); ++t) {
@@ -59,6 +60,7 @@ Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees
         kinds_.push_back(articulated::is_length(body.type, k) ? Kind::Length : Kind::Angle);
   }
   kinds_.insert(kinds_.end(), kWorks + motors_.size() + kReceived * received_.size(), Kind::Ledger);
+  sprung_.assign(kinds_.size(), 0);
   at_.q.setZero(nq_);
   at_.v.setZero(velocities());
   at_.mean.setZero(velocities());
@@ -95,6 +97,23 @@ void Cluster::begin(StageForces* forces, Meter& meter) {
   working_ = forces != nullptr;
   driven_ = working_;
   for (const Tree* tree : trees_) driven_ = driven_ || tree->driven;
+  note_springs();
+}
+
+/// Of joints, of whole trees where Springs, contact springs or force methods may push them.
+void Cluster::note_springs() {
+  const bool all = forces_ && forces_->pulls();
+  std::fill_n(sprung_.begin(), nv_, static_cast<char>(all));
+  if (all) return;
+  auto first = sprung_.begin();
+  for (const Tree* tree : trees_) {
+    for (std::size_t i = 0; i < tree->loads.drives.size(); ++i) {
+      const articulated::Body& body = tree->model.body(static_cast<int>(i));
+      if (tree->loads.drives[i].stiffness > 0)
+        std::fill_n(first + body.v, articulated::velocity_count(body.type), char{1});
+    }
+    first += tree->model.velocities();
+  }
 }
 
 void Cluster::step(double time, double h) {

@@ -24,6 +24,8 @@ class StageForces {
   virtual void aim() = 0;
   /// True if add() has something to do: the trees' links must then be placed.
   virtual bool adds() const = 0;
+  /// Forces that go with the way of the trees' links are among these.
+  virtual bool pulls() const = 0;
   /// Adds what springs, contacts and scripts do to wrenches of the trees' links, which stand where the stage is if
   /// adds() says so.
   virtual void add(double time) = 0;
@@ -92,6 +94,7 @@ class Cluster final : public articulated::System, public InMemory {
   int positions() const override { return nq_; }
   int velocities() const override { return received_at() + kReceived * static_cast<int>(received_.size()); }
   articulated::Kind kind(int velocity) const override { return kinds_[static_cast<std::size_t>(velocity)]; }
+  bool sprung(int velocity) const override { return sprung_[static_cast<std::size_t>(velocity)] != 0; }
   void acceleration(double t, const articulated::Vector& q, const articulated::Vector& v, double step,
                     articulated::Vector& a) override;
   void move(const articulated::Vector& q, const articulated::Vector& d, articulated::Vector& out) override;
@@ -122,6 +125,7 @@ class Cluster final : public articulated::System, public InMemory {
   void take_received(const articulated::Vector& v);
   void make_integrators();
   bool semi_implicit() const { return accuracy_.scheme == articulated::Scheme::SemiImplicitEuler && !finer_now_; }
+  void note_springs();
   void read_mean();
   void write_mean();
   void scatter(const articulated::Vector& q, const articulated::Vector& v);
@@ -138,6 +142,7 @@ class Cluster final : public articulated::System, public InMemory {
   Meter* meter_ = nullptr;
   std::uint64_t units_ = 0;  // of work, an evaluation
   std::pmr::vector<articulated::Kind> kinds_;
+  std::pmr::vector<char> sprung_;        // (of v) springs pull along it
   std::pmr::vector<Motor> motors_;       // their impulses are further coordinates, after the works
   articulated::Vector torques_;          // (nv_) of motors, at the last stage
   std::pmr::vector<Received> received_;  // per kg these are further coordinates, after the motors' impulses

@@ -16,6 +16,7 @@ class Stage final : public StageForces {
 
   void aim() override;
   bool adds() const override;
+  bool pulls() const override { return asked_ || pressed || !cluster_.springs.empty(); }
   void add(double time) override;
   bool accelerate(const articulated::Vector& q, const articulated::Vector& v, articulated::Vector& a) override;
   std::uint64_t constrain(Tree& tree, double* acceleration) override {
