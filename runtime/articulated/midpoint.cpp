@@ -31,9 +31,6 @@ Midpoint::Midpoint(System& system, const Tolerance& tolerance)
       last_change_(a_),
       last_result_(a_) {}
 
-/// An oscillation at w answers an error of the guess with -(w h / 2)^2 of it. The force is that of the last guess; a
-/// way by the answer alone would drive the oscillation on in each step, and one by the guess alone would damp it, by as
-/// much. By their mean it keeps its energy, as long as steps take as many guesses.
 bool Midpoint::step(Instant& at, double h) {
   evaluations_ = 0;
   try {
@@ -43,8 +40,6 @@ bool Midpoint::step(Instant& at, double h) {
     return false;
   }
   d_ = h * result_;
-  for (int i = 0; i < static_cast<int>(d_.size()); ++i)
-    if (system_.sprung(i)) d_[i] -= 0.5 * h * change_[i];
   system_.move(at.q, d_, q_);
   at.q = q_;
   at.v += h * a_;
@@ -64,7 +59,10 @@ bool Midpoint::find_mean(const Instant& at, double h) {
     result_ = at.v + (0.5 * h) * a_;
     change_ = result_ - u_;
     const double largest = largest_change();
-    if ((guessed || evaluations_ > 1) && largest <= kShare * tolerance_.relative) return true;
+    if ((guessed || evaluations_ > 1) && largest <= kShare * tolerance_.relative) {
+      if (evaluations_ == 2) correct_second(at, h);
+      return true;
+    }
     // The first two guesses are not corrected: what the rule makes of their difference says how much rotates in a step.
     if (evaluations_ == 2 && change_.norm() > kMostShare * last_change_.norm()) return false;
     // Where the change shrinks by a constant factor, this goes to its end at once.
@@ -81,6 +79,23 @@ bool Midpoint::find_mean(const Instant& at, double h) {
   }
   evaluations_ = kMostEvaluations;
   return false;
+}
+
+/// An oscillation at w answers an error of the guess with -(w h / 2)^2 of it. One that was answered twice always has
+/// the sign that drives the oscillation on. Where springs pull, what the two changes say is left of it is removed.
+void Midpoint::correct_second(const Instant& at, double h) {
+  double along = 0, square = 0;
+  for (int i = 0; i < static_cast<int>(u_.size()); ++i) {
+    if (!system_.sprung(i)) continue;
+    const double unit = system_.kind(i) == Kind::Angle ? tolerance_.angular_velocity : tolerance_.velocity;
+    const double less = (last_change_[i] - change_[i]) / unit;
+    along += change_[i] / unit * less;
+    square += less * less;
+  }
+  if (!(square > 0 && along < 0)) return;
+  constexpr double kMost = kMostShare / (1 + kMostShare);
+  result_ += std::max(along / square, -kMost) * change_;
+  a_ = (2 / h) * (result_ - at.v);
 }
 
 /// The error of the velocity, by kind and size. Infinite where a number is not finite. Accounts, which change nothing,

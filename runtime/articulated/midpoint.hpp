@@ -8,7 +8,6 @@ namespace breve::articulated {
 /// Finds the mean velocity u of a step, u = v + h/2 a(q moved by h/2 u, u, t + h/2), by putting each guess into the
 /// right side, and takes from the last two what seems to be left of the error. The rule has order 2 and neither gains
 /// nor loses energy in the long run, which makes a step of some three evaluations as good for walkers as one of six.
-/// Where springs pull, the way is that of the mean of the last guess and its answer: see step().
 /// Source: Anderson 1965 (repetition with a memory of one).
 class Midpoint {
  public:
@@ -22,6 +21,7 @@ class Midpoint {
  private:
   bool find_mean(const Instant& at, double h);
   double largest_change();
+  void correct_second(const Instant& at, double h);
 
   System& system_;
   const Tolerance tolerance_;
