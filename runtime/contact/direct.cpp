@@ -125,10 +125,10 @@ bool enough_from_far(const Workspace& work, const LinearSolves& solves) {
 
 namespace {
 
-/// Sweeps from the last step's impulses. Feet far apart hardly feel one another: some sweeps solve them, or come so
-/// near that Newton's method converges from there. All of them cost as much as a few of its steps, so none is too slow.
 constexpr int kNearSweeps = 24;
 
+/// Sweeps from the last step's impulses. Feet far apart hardly feel one another: some sweeps solve them, or come so
+/// near that Newton's method converges from there. All of them cost as much as a few of its steps, so none is too slow.
 void sweep_near(Workspace& work, double tolerance, int most) {
   Sweeps sweeps(work, true);
   for (int i = 0; i < most; ++i)
