@@ -127,15 +127,30 @@ void Planar::Core::number_assemblies() {
   articulations_known = false;
   for (FlatBody& flat : slots) {
     flat.assembly = kNoSlot;
+    flat.looped = false;
     flat.jointed = flat.body != kNoBody && joints_at.count(flat.body) != 0;
   }
   std::pmr::vector<BodyIndex> all(memory);
   for (std::uint32_t i = 0; i < slots.size(); ++i) {
     if (slots[i].body == kNoBody || !slots[i].jointed || slots[i].fixed || slots[i].assembly != kNoSlot) continue;
     collect(slots[i].body, all);
+    const bool looped = has_loops(all);
     for (const BodyIndex body : all)
-      if (FlatBody* flat = find(body)) flat->assembly = i;
+      if (FlatBody* flat = find(body)) flat->assembly = i, flat->looped = looped;
   }
+}
+
+/// Bodies of an assembly have more joints than would connect them, and what they hang on, without a loop.
+bool Planar::Core::has_loops(std::span<const BodyIndex> all) const {
+  std::size_t ends = 0, outer = 0;  // of joints, at these bodies and elsewhere
+  for (const BodyIndex body : all)
+    for (const JointIndex index : joints_at.at(body)) {
+      const JointDescription& is = joints[index].is;
+      const BodyIndex other = is.parent == body ? is.child : is.parent;
+      ++(other == kNoBody || !bodies->dynamic(other) ? outer : ends);
+    }
+  const std::size_t tree = all.size() - (outer > 0 ? 0 : 1);
+  return ends / 2 + outer > tree;
 }
 
 const AssemblySettings* Planar::Core::settings_of(BodyIndex body, bool (*wanted)(const AssemblySettings&)) const {

@@ -104,7 +104,8 @@ class Planar::Core::Assembly {
   double close_gaps(double most);
   double work_of_moves() const;
   bool is_open(const FlatJoint& joint) const;
-  double energy_about() const;
+  void take_velocities();
+  void pay(double energy);
   void list_touching(std::pmr::vector<Island::Apart>& all) const;
 
   // assembly_energy.cpp
@@ -113,6 +114,7 @@ class Planar::Core::Assembly {
     Vector velocity = Vector::Zero();
     double inertia = 0;  // about the center; 0 where the world holds the assembly
   };
+  double motion_among();
   bool touches_only_fixed() const;
   bool pulled() const;
   double least_move() const;

@@ -169,20 +169,24 @@ Planar::Core::Assembly::Vector Planar::Core::Assembly::carried(const Common& com
   return common.velocity + Vector(moved.x(), moved.y(), 0);
 }
 
+/// The energy of the motion of the links among one another, in Box2D's units. That motion is then in moves_.
+double Planar::Core::Assembly::motion_among() {
+  const Common common = common_motion();
+  double sum = 0;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    moves_[i] = velocities_[i] - carried(common, i);
+    sum += moves_[i].cwiseAbs2().cwiseQuotient(mobility_[i]).sum() / 2;
+  }
+  return sum;
+}
+
 /// Scales the motion of the links among one another, which keeps all momenta, so that the energy is what it was and
 /// what the works came to.
 /// @param energy  of motion, that there is to be, in Box2D's units
 /// @return        what of it is missing afterwards: where hardly anything moves among the links, they cannot take it
 double Planar::Core::Assembly::restore_energy(double energy) {
   constexpr double kMost = 0.1;  // of the energy of that motion
-  const Common common = common_motion();
-  const double missing = energy - kinetic();
-  std::fill(moves_.begin(), moves_.end(), Vector::Zero());
-  double among = 0;
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    moves_[i] = velocities_[i] - carried(common, i);
-    among += moves_[i].cwiseAbs2().cwiseQuotient(mobility_[i]).sum() / 2;
-  }
+  const double missing = energy - kinetic(), among = motion_among();
   if (!(among > 0) || !std::isfinite(missing)) return missing;
   const double taken = std::clamp(missing, -kMost * among, kMost * among), scale = std::sqrt(1 + taken / among);
   for (std::size_t i = 0; i < links_.size(); ++i) velocities_[i] += (scale - 1) * moves_[i];

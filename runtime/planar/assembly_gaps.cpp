@@ -101,25 +101,30 @@ bool is_deeper(const Planar::Core::Island::Apart& before) {
 
 }  // namespace
 
-/// The energy of motion with which its links, and what touches them, began the sub-step, in Box2D's units.
-double Planar::Core::Assembly::energy_about() const {
-  const auto energy = [u = core_.settings.unit](const FlatBody& flat) {
-    const double v = vector_of(flat.before).squaredNorm(), w = double{flat.before_spin} * double{flat.before_spin};
-    return flat.fixed ? 0 : (flat.mass.mass * v + flat.mass.inertia(2, 2) / (u * u) * w) / 2;
-  };
-  double sum = 0;
-  for (const Link& link : links_) {
-    sum += energy(*link.flat);
-    for (b2ContactEdge* edge = link.flat->b2->GetContactList(); edge; edge = edge->next)
-      if (edge->contact->IsTouching() && core_.of(edge->other).assembly != link.flat->assembly)
-        sum += energy(core_.of(edge->other));
+/// Velocities are those that Box2D's bodies have.
+void Planar::Core::Assembly::take_velocities() {
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const b2Body& b = *links_[i].flat->b2;
+    const b2Vec2 v = b.GetLinearVelocity();
+    velocities_[i] = Vector(double{v.x}, double{v.y}, double{b.GetAngularVelocity()});
   }
-  return sum;
+}
+
+/// The motion of the links among one another pays for an energy, in Box2D's units.
+void Planar::Core::Assembly::pay(double energy) {
+  if (!(energy > 0)) return;
+  take_velocities();
+  restore_energy(kinetic() - energy);
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    b2Body& b = *links_[i].flat->b2;
+    b.SetLinearVelocity(b2Vec2(static_cast<float>(velocities_[i].x()), static_cast<float>(velocities_[i].y())));
+    b.SetAngularVelocity(static_cast<float>(velocities_[i].z()));
+  }
 }
 
 FlatBody* Planar::Core::Assembly::close(double dt, std::pmr::vector<Island::Apart>& touching) {
   constexpr std::uint64_t kWork = 20;  // for each joint
-  constexpr double kLifts = 0.01;      // of the energy of motion: what this may lift the links by
+  constexpr double kLifts = 0.01;      // of their motion among one another: what this may lift the links by
   if (!planned_ || core_.finishing) return nullptr;
   for (Link& link : links_) {
     link.flat = core_.find(link.body);
@@ -139,12 +144,25 @@ FlatBody* Planar::Core::Assembly::close(double dt, std::pmr::vector<Island::Apar
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const b2Body& b = *links_[i].flat->b2;
     after_[i] = FlatPose(vector_of(b.GetWorldCenter()), double{b.GetAngle()});
-    velocities_[i].setZero();
   }
+  take_velocities();
+  const double most = kLifts * motion_among();
+  std::fill(velocities_.begin(), velocities_.end(), Vector::Zero());
   const auto listed = static_cast<std::ptrdiff_t>(touching.size());
   list_touching(touching);
-  close_gaps(kLifts * energy_about());
-  for (std::size_t i = 0; i < links_.size(); ++i) put(i);
+  const double lifted = -close_gaps(most);
+  const auto move_of = [this](std::size_t i) {
+    const b2Body& b = *links_[i].flat->b2;
+    const Vector2 way = after_[i].center - vector_of(b.GetWorldCenter());
+    return Vector3(way.x(), way.y(), after_[i].angle - double{b.GetAngle()});
+  };
+  MovedBack back;
+  for (std::size_t i = 0; i < links_.size(); ++i) back.add(*links_[i].flat, move_of(i));
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    back.stop(*links_[i].flat, move_of(i));
+    put(i);
+  }
+  pay(lifted);
   return std::any_of(touching.begin() + listed, touching.end(), is_deeper) ? links_.front().flat : nullptr;
 }
 

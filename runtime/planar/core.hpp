@@ -69,6 +69,7 @@ struct FlatBody {
   int pieces = 1;                 // sub-steps that it needs for one of the others
   std::uint32_t part = kNoSlot;   // of what is solved
   std::uint32_t assembly = kNoSlot;
+  bool looped = false;              // joints of its assembly close loops
   double thickness = 0;             // half its narrowest width, length units
   double reach = 0;                 // of its shape from its centre of mass, length units
   double twist = 0;                 // N*m, with `pull`
@@ -242,6 +243,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void place_beyond(std::span<const BodyIndex> some, BodyIndex parent, const Pose& from, const Pose& to);
   void follow(BodyIndex leader, const Pose& from);
   void number_assemblies();
+  bool has_loops(std::span<const BodyIndex> all) const;
   const AssemblySettings* settings_of(BodyIndex body, bool (*wanted)(const AssemblySettings&)) const;
 
   // waking.cpp

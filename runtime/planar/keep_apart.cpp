@@ -31,15 +31,25 @@ void Planar::Core::Island::keep_apart(std::span<const Apart> before) {
   aim_apart(before);
   for (const contact::Mover& mover : movers_) std::fill_n(mover.v, mover.size, 0.0);
   solve(kExact);
+  MovedBack back;
+  for (FlatBody* flat : bodies_) back.add(*flat, move_of(*flat));
   for (FlatBody* flat : bodies_) {
-    const Part& part = part_of(*flat);
-    const auto at = part.response ? static_cast<std::size_t>(part.response->index_of(*flat)) : 0;
+    const Vector3 moved = move_of(*flat);
     b2Body& b = *flat->b2;
-    const b2Vec2 move(static_cast<float>(part.v[at]), static_cast<float>(part.v[at + 1]));
-    const float angle = b.GetAngle() + static_cast<float>(part.response ? part.v[at + 2] : part.v[5]);
+    const b2Vec2 move(static_cast<float>(moved[0]), static_cast<float>(moved[1]));
+    const float angle = b.GetAngle() + static_cast<float>(moved[2]);
     if (move == b2Vec2(0, 0) && angle == b.GetAngle()) continue;
     b.SetTransform(b.GetWorldCenter() + move - b2Mul(b2Rot(angle), b.GetLocalCenter()), angle);
+    back.stop(*flat, moved);
   }
+}
+
+/// How a body moves by the velocities of its part: along x and y, and about z.
+Vector3 Planar::Core::Island::move_of(const FlatBody& flat) {
+  const Part& part = part_of(flat);
+  if (!part.response) return {part.v[0], part.v[1], part.v[5]};
+  const auto at = static_cast<std::size_t>(part.response->index_of(flat));
+  return {part.v[at], part.v[at + 1], part.v[at + 2]};
 }
 
 }  // namespace breve

@@ -21,6 +21,7 @@ constexpr double kUneven = 4;  // ratio of two masses, from which Box2D's sweeps
 // body's radius of gyration.
 constexpr double kDeep = 0.1, kHigh = 0.25;
 constexpr double kGain = 0.002;   // of the energy of motion: what contacts may err by
+constexpr double kTorn = 1;       // falls of a sub-step: the speed that sweeps leave at joints of loops
 constexpr int kMostPoints = 100;  // of a stack of similar masses: Box2D goes on with more of them
 
 bool moves(const FlatBody* flat) { return flat && !flat->fixed; }
@@ -36,11 +37,12 @@ struct Together {
   std::uint32_t next;  // one of them that stands for more of them; itself at last
   double gain = 0;     // J, that contacts and joints gave beyond the work of motors
   double allowed = 0;  // J, of that
+  double parting = 0;  // Box2D's length units/s, of the ends of joints that close loops, in sum
   int points = 0;      // of contacts
   bool uneven = false, joined = false, struck = false, stacked = false;
-  bool suspect() const {
+  bool suspect(double fall) const {
     const bool solves = uneven || (stacked && points <= kMostPoints);
-    return (struck && solves) || ((uneven || joined) && gain > allowed);
+    return (struck && solves) || ((uneven || joined) && gain > allowed) || parting > kTorn * fall;
   }
 };
 
@@ -82,6 +84,7 @@ class Landings {
   void weigh();
   void weigh_contact(const FlatBody& a, const FlatBody& b, b2Contact* contact);
   double given_to(const FlatBody& flat) const;
+  double parting_of(const FlatJoint& joint) const;
   double size_of(const FlatBody& flat) const;
   static double strike_of(const FlatBody& a, const FlatBody& b, b2Contact* contact);
 
@@ -104,6 +107,7 @@ void Landings::weigh() {
     all.gain -= core_.motor_work(joint, dt_);
     all.joined = true;
     all.uneven = all.uneven || uneven(&child, parent);
+    if (child.looped) all.parting += parting_of(joint);
   });
   for_contacts([this](const FlatBody& a, const FlatBody& b, b2Contact* contact) { weigh_contact(a, b, contact); });
 }
@@ -119,6 +123,18 @@ void Landings::weigh_contact(const FlatBody& a, const FlatBody& b, b2Contact* co
   const double size = std::min(size_of(a), size_of(b)), speed = strike_of(a, b, contact), u = core_.settings.unit;
   all.struck = speed * dt_ > kDeep * size || (speed * u > core_.slowest_bounce(core_.law_of(a, b)) &&
                                               speed * speed * u / 2 > core_.settings.gravity.norm() * kHigh * size);
+}
+
+/// The speed at which the ends of a joint part, which the sweeps have left.
+double Landings::parting_of(const FlatJoint& joint) const {
+  b2Joint& b = *joint.b2;
+  Vector2 speed = vector_of(b.GetBodyB()->GetLinearVelocityFromWorldPoint(b.GetAnchorB())) -
+                  vector_of(b.GetBodyA()->GetLinearVelocityFromWorldPoint(b.GetAnchorA()));
+  if (joint.is.kind == JointKind::Prismatic) {
+    const Vector2 axis = core_.axis_of(joint);
+    speed -= speed.dot(axis) * axis;
+  }
+  return speed.norm();
 }
 
 /// The energy that contacts and joints have given to a body, J.
@@ -161,10 +177,11 @@ double Landings::strike_of(const FlatBody& a, const FlatBody& b, b2Contact* cont
 void Planar::Core::settle_landings(double dt) {
   if (joints.empty() && !(heaviest > kUneven * lightest) && !landed_hard) return;
   Landings landings(*this, dt);
+  const double fall = settings.gravity.norm() / settings.unit * dt;
   for (FlatBody& flat : slots) flat.gathered = false;
   for (FlatBody& flat : slots) {
     if (flat.body == kNoBody || flat.fixed || flat.gathered || flat.solved || !flat.b2->IsAwake()) continue;
-    if (!landings.of(flat).suspect()) continue;
+    if (!landings.of(flat).suspect(fall)) continue;
     Island island(*this, dt);
     island.gather(flat);
     island.solve();

@@ -12,6 +12,8 @@ namespace breve {
 /// velocities that the joints forbid. Assemblies with more than 100 joints answer as if none held.
 class Response {
  public:
+  /// About the centre of mass, in Box2D's units.
+  static double inertia(const FlatBody& flat);
   using Matrix = Eigen::MatrixXd;
   using Vector = Eigen::VectorXd;
 
@@ -45,7 +47,6 @@ class Response {
   double kinetic() const;  // in Box2D's units
 
  private:
-  static double inertia(const FlatBody& flat);
   void gather(FlatBody& flat);
   void hold_joints();
   void add_rows(const FlatJoint& joint, Matrix& jacobian, Eigen::Index& rows) const;
