@@ -6,6 +6,7 @@
 
 #include "runtime/planar/assembly.hpp"
 #include "runtime/planar/island.hpp"
+#include "runtime/planar/moved_back.hpp"
 
 namespace breve {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/planar/island.hpp"
+#include "runtime/planar/moved_back.hpp"
 
 namespace breve {
 

@@ -125,7 +125,7 @@ void Landings::weigh_contact(const FlatBody& a, const FlatBody& b, b2Contact* co
                                               speed * speed * u / 2 > core_.settings.gravity.norm() * kHigh * size);
 }
 
-/// The speed at which the ends of a joint part, which the sweeps have left.
+/// The speed at which the ends of a joint part, which the sweeps have left, Box2D's length units/s.
 double Landings::parting_of(const FlatJoint& joint) const {
   b2Joint& b = *joint.b2;
   Vector2 speed = vector_of(b.GetBodyB()->GetLinearVelocityFromWorldPoint(b.GetAnchorB())) -

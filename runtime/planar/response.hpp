@@ -12,10 +12,10 @@ namespace breve {
 /// velocities that the joints forbid. Assemblies with more than 100 joints answer as if none held.
 class Response {
  public:
-  /// About the centre of mass, in Box2D's units.
-  static double inertia(const FlatBody& flat);
   using Matrix = Eigen::MatrixXd;
   using Vector = Eigen::VectorXd;
+  /// About the centre of mass, in Box2D's units.
+  static double inertia(const FlatBody& flat);
 
   /// The response of two bodies and their assemblies. Null, or what does not move by itself, answers nothing.
   Response(const Planar::Core& core, FlatBody* a, FlatBody* b);
