@@ -18,13 +18,13 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       prediction_(state_, contacts_, rows_, books_),
       solver_(state_, contacts_, rows_, momentum_, prediction_),
       positions_(state_, contacts_, rows_, momentum_, credit_),
-      loops_(state_, contacts_, rows_, positions_, smooth_),
+      loops_(state_, contacts_, rows_, positions_, smooth_, momentum_, books_),
       overlaps_(state_, rows_),
       sub_step_(state_, contacts_, springs_, smooth_, rows_, books_, prediction_, solver_, positions_, loops_,
                 overlaps_),
       impacts_(state_, contacts_, springs_, rows_, solver_, momentum_, sub_step_, handlers_),
       step_(state_, contacts_, smooth_, rows_, sub_step_, impacts_, handlers_, balance_),
-      guard_(state_, balance_, books_, momentum_, credit_, overlaps_, handlers_, step_) {}
+      guard_(state_, balance_, books_, momentum_, credit_, overlaps_, handlers_, loops_, step_) {}
 
 Island::~Island() = default;
 

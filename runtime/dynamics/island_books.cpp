@@ -103,12 +103,24 @@ void Books::note_smooth(double free_works) {
     smooth_stored_ += stored;
     sub_start_.smooth_kinetic += kinetic;
   }
+  if (!state_.has_loops()) return;
+  smooth_all_ = stored_energy(state_);
+  smooth_done_ = works_of(state_.result.ledger);
+  for (const Clustered& one : state_.clusters) smooth_done_ += works_of(one.pending);
 }
 
 double Books::taken() {
   double now = 0, kinetic = 0;
   for (const Clustered& one : state_.clusters) now += stored_energy(state_, one, kinetic);
   return smooth_stored_ - now;
+}
+
+double Books::payable(bool by_rows) {
+  // Links may have given it to bodies without joints, to motors or to scripts' forces instead.
+  if (kept_)
+    return std::max(0.0, std::min(taken(), smooth_all_ - stored_energy(state_)) +
+                             std::min(0.0, works_of(state_.result.ledger) - smooth_done_));
+  return by_rows ? std::max(0.0, -missing(stored_energy(state_) - stored_, ledger_, state_.result.ledger)) : 0;
 }
 
 bool Books::only_motors() const { return rows_.contacts() == 0 && rows_.limits() == 0; }

@@ -44,6 +44,9 @@ class Books {
   double kinetic() const { return sub_start_.kinetic; }
   /// What the rows of the sub-step took from trees so far, with all that was done to positions since.
   double taken();
+  /// Of that, and of what rows of loops took in a sub-step without others, what closing loops by hand may give back.
+  /// @param by_rows  rows hold the loops in this sub-step
+  double payable(bool by_rows);
   double smooth_kinetic() const { return sub_start_.smooth_kinetic; }
   double predicted() const { return sub_start_.predicted; }
   void set_predicted(double energy) { sub_start_.predicted = energy; }
@@ -62,6 +65,8 @@ class Books {
   Momentum& momentum_;
   SubStepEnergy sub_start_;   // of all
   double smooth_stored_ = 0;  // J, of clusters, or of all if springs connect bodies without joints, after smooth motion
+  double smooth_all_ = 0;     // J, of all after smooth motion, in an island with closed loops
+  double smooth_done_ = 0;    // J, that motors and scripts' forces worked until then
   double stored_ = 0;         // J, where note_start() was called
   Energy ledger_;             // likewise
   bool kept_ = false;

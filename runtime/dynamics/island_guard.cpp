@@ -41,6 +41,7 @@ void Guard::step(MechanicsClient* client, double start, double h) {
   const GuardMode mode = state_.core.settings.guard;
   const Accuracy asked = state_.accuracy;
   state_.read_drives(h);
+  loops_.see_whose_gaps();
   watch_.shorten_sub_steps(h);
   const Accuracy followed = state_.accuracy;
   Trouble trouble;

@@ -10,7 +10,7 @@ namespace breve::island {
 class Guard {
  public:
   Guard(State& state, Balance& balance, Books& books, Momentum& momentum, Credit& credit, Overlaps& overlaps,
-        Handlers& handlers, Step& step)
+        Handlers& handlers, Loops& loops, Step& step)
       : state_(state),
         balance_(balance),
         books_(books),
@@ -18,6 +18,7 @@ class Guard {
         credit_(credit),
         overlaps_(overlaps),
         handlers_(handlers),
+        loops_(loops),
         step_(step),
         watch_(state) {}
 
@@ -45,6 +46,7 @@ class Guard {
   Credit& credit_;
   Overlaps& overlaps_;
   Handlers& handlers_;
+  Loops& loops_;
   Step& step_;
   Watch watch_;
   // J, of the last try of a step; what is unexplained also has what rows gained, which is taken back.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/articulated/kinematics.hpp"
 #include "runtime/dynamics/island_energy.hpp"
 
 namespace breve::island {
@@ -58,23 +59,39 @@ bool Loops::hold(double time, double h) {
   return last < kFound;
 }
 
-bool Loops::stand_open() const {
+/// How far a loop of the tree stands open at most, rad or length units; 0 if no more than an integrator errs.
+double Loops::gap_of(const Tree& tree) const {
   constexpr double kOpen = 1e-6;  // of the smaller body's size, or rad
   const auto size_of = [this](BodyIndex body) {
     return body != kNoBody && state_.core.bodies->dynamic(body) ? state_.shape(body).bounding_radius()
                                                                 : JointDrive::kNoLimit;
   };
-  for (const Tree* tree : state_.trees)
-    for (const JointIndex index : tree->loops) {
-      const JointDescription& is = state_.core.joints[index].is;
-      const LoopRows loop = state_.core.loop_rows(*tree, is);
-      const double most = kOpen * std::min(size_of(is.child), size_of(is.parent));
-      for (int i = 0; i < loop.count; ++i) {
-        const LoopRow& row = loop.rows[static_cast<std::size_t>(i)];
-        if (std::abs(row.error) > (row.angular ? kOpen : most)) return true;
-      }
+  double worst = 0;
+  for (const JointIndex index : tree.loops) {
+    const JointDescription& is = state_.core.joints[index].is;
+    const LoopRows loop = state_.core.loop_rows(tree, is);
+    const double most = kOpen * std::min(size_of(is.child), size_of(is.parent));
+    for (int i = 0; i < loop.count; ++i) {
+      const LoopRow& row = loop.rows[static_cast<std::size_t>(i)];
+      const double open = std::abs(row.error);
+      if (open > (row.angular ? kOpen : most)) worst = std::max(worst, open);
     }
-  return false;
+  }
+  return worst;
+}
+
+bool Loops::stand_open() const {
+  return std::any_of(state_.trees.begin(), state_.trees.end(), [this](const Tree* tree) { return gap_of(*tree) > 0; });
+}
+
+void Loops::see_whose_gaps() {
+  constexpr double kCloser = 0.5;  // of the gap, that a step is to leave
+  for (Tree* tree : state_.trees) {
+    if (tree->loops.empty() || tree->set_open == 0) continue;
+    articulated::forward_kinematics(tree->model, tree->data, tree->state);
+    const double gap = gap_of(*tree);
+    tree->set_open = gap <= kCloser * tree->set_open ? gap : 0;
+  }
 }
 
 bool Loops::left_to_rows() const {
@@ -92,32 +109,51 @@ void Loops::note_left() {
 }
 
 /// Positions first, then velocities along the loops.
-void Loops::close() {
+void Loops::close(bool by_rows) {
   if (!state_.has_loops()) return;
   contacts_.clear();
   constexpr int kMost = 4;  // Newton's method from a small error: two are enough but far from the solution
   constexpr double kClosed = 1e-13;
-  bool open = false;
+  Closing closing;
   for (int i = 0;; ++i) {
     state_.place();
     rows_.make(Rows::Motors::Leave);
     state_.load_velocities();
-    if (i == 0) open = stand_open();
     double worst = 0;
     for (std::size_t k = 0; k < rows_.loops(); ++k) worst = std::max(worst, std::abs(rows_.loop_error(k).units()));
-    if (worst < kClosed || i == kMost || !approach(open)) break;
+    if (worst < kClosed || i == kMost) break;
+    if (i == 0) closing = begin_closing(by_rows);
+    if (!approach(closing)) break;
   }
   close_velocities();
+}
+
+Loops::Closing Loops::begin_closing(bool by_rows) {
+  constexpr double kUnseen = 1e-9;  // of weight(): the round-off of links that lie still
+  Closing closing;
+  closing.open = stand_open();
+  // The guard sees what stages gain that tear a loop open: finer ones do not.
+  const bool torn = closing.open && !by_rows;
+  closing.theirs = torn || std::any_of(state_.trees.begin(), state_.trees.end(),
+                                       [](const Tree* tree) { return !tree->loops.empty() && tree->set_open > 0; });
+  if (closing.theirs) return closing;
+  closing.rows = books_.payable(by_rows) + kUnseen * weight(state_);
+  if (carries()) return closing;
+  constexpr double kErred = 1e-7;  // of the motion: an integrator errs by as much, to both sides
+  const double moving = momentum_.moving(Payers::Looped);
+  closing.motion = by_rows ? moving : kFew * moving;  // after rows all of it pays for the gain of the whole sub-step
+  closing.free = kErred * moving;
+  return closing;
 }
 
 /// One step of Newton's method towards closed loops, for rows that were made where the trees stand. It is shortened
 /// until the sum of the squares of their errors falls: near a pose in which links may fold, round-off divided by next
 /// to nothing would take them anywhere. Rows of loops that stand open may contradict one another: they yield a little,
-/// so that there is a step at all, which is no longer than can be paid for.
+/// so that there is a step at all. It is no longer than can be paid for.
 ///
 /// Source: Nocedal and Wright 2006, 10.3 (Levenberg-Marquardt).
 /// @return  false if nothing was gained: the trees stand where they stood
-bool Loops::approach(bool open) {
+bool Loops::approach(Closing& closing) {
   constexpr double kYield = 1e-6;    // of a row's own response
   constexpr double kShorter = 0.25;  // of a step that leads away
   constexpr double kShortest = 0.01;
@@ -125,11 +161,11 @@ bool Loops::approach(bool open) {
   exact.direct = true;
   exact.tolerance = 1e-14 * state_.unit();  // a length here: loops are closed to round-off
   const double before = errors_squared();
-  const Stored held = open ? read_stored() : Stored{};
+  const Stored held = read_stored();
   for (std::size_t k = 0; k < rows_.loops(); ++k) {
     contact::ScalarRow& row = rows_.loop(k);
     row.bias = -rows_.loop_error(k).open;
-    if (open) row.softness = kYield * rows_.response(row);
+    if (closing.open) row.softness = kYield * rows_.response(row);
   }
   positions_.begin_moves();
   contact::solve_island(rows_.movers(), {}, rows_.scalars(), exact, rows_.workspace());
@@ -137,7 +173,7 @@ bool Loops::approach(bool open) {
   double length = 1;
   for (;;) {
     state_.place_links();
-    if (errors_squared() < before && (!open || pay_for_closing(held))) return true;
+    if (errors_squared() < before && pay_for_closing(held, closing)) return true;
     if (length < kShortest) break;
     positions_.move_back((1 - kShorter) * length);
     length *= kShorter;
@@ -148,18 +184,33 @@ bool Loops::approach(bool open) {
   return false;
 }
 
+/// Loops are drawn together for no more than rows took in the sub-step, and than motion of the links pays for: planks
+/// of a straight bridge may all move across it, as far as velocities tell, and would be lifted for nothing in each
+/// sub-step. A gap stays where nothing pays.
+/// @param held  before they were drawn together
+/// @return      whether it is paid for
+bool Loops::pay_for_closing(const Stored& held, Closing& closing) {
+  const Stored now = read_stored();
+  if (closing.theirs) return pay_for_theirs(held, now);
+  const double given = now.all - held.all - (now.script - held.script);
+  if (given > closing.rows + closing.motion) return false;
+  if (touches()) state_.result.ledger.contact_loss -= now.all - held.all;
+  const double by_motion = std::max(0.0, given - closing.rows);
+  closing.rows = std::max(0.0, closing.rows - given);
+  closing.motion -= by_motion;
+  if (by_motion > closing.free) positions_.pay_for_moves(by_motion, false, Payers::Looped);
+  return true;
+}
+
 /// A body that spins or has springs is drawn together no more than its motion pays for. Contacts part what loops draw
 /// together and take the energy that it gains, so that it is booked with theirs; in a body that touches nothing it is
 /// unexplained energy, which the guard tells.
-/// @param held  before loops drew it together
-/// @return      whether it is paid for
-bool Loops::pay_for_closing(const Stored& held) {
-  const Stored now = read_stored();
+bool Loops::pay_for_theirs(const Stored& held, const Stored& now) {
   const double given = now.inner - held.inner - (now.script - held.script);
   if (given > positions_.payable_by_motion()) return false;
   const bool by_contacts = touches();
   if (by_contacts) state_.result.ledger.contact_loss -= now.all - held.all;
-  positions_.pay_for_moves(given, by_contacts);
+  positions_.pay_for_moves(given, by_contacts, Payers::Trees);
   return true;
 }
 
@@ -190,6 +241,15 @@ double Loops::read_errors() {
       }
     }
   return worst;
+}
+
+/// Other bodies touch trees with loops: the motion with which they press a loop open is not to close it.
+bool Loops::carries() const {
+  const auto looped = [](const BodySlot& slot) { return slot.tree && !slot.tree->loops.empty(); };
+  return std::any_of(state_.pairs.begin(), state_.pairs.end(), [&](const NearPair* pair) {
+    const BodySlot a = state_.slot_of(pair->a), b = state_.slot_of(pair->b);
+    return pair->touching && (looped(a) ? b.mover >= 0 && !looped(b) : a.mover >= 0 && looped(b));
+  });
 }
 
 bool Loops::touches() const {

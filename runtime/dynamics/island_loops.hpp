@@ -2,6 +2,7 @@
 // a projection of positions after it. Loops may be impossible to close: they then end as nearly closed as they can be.
 #pragma once
 
+#include "runtime/dynamics/island_books.hpp"
 #include "runtime/dynamics/island_positions.hpp"
 #include "runtime/dynamics/island_smooth.hpp"
 
@@ -9,8 +10,18 @@ namespace breve::island {
 
 class Loops {
  public:
-  Loops(State& state, Contacts& contacts, Rows& rows, Positions& positions, SmoothMotion& smooth)
-      : state_(state), contacts_(contacts), rows_(rows), positions_(positions), smooth_(smooth) {}
+  Loops(State& state, Contacts& contacts, Rows& rows, Positions& positions, SmoothMotion& smooth, Momentum& momentum,
+        Books& books)
+      : state_(state),
+        contacts_(contacts),
+        rows_(rows),
+        positions_(positions),
+        smooth_(smooth),
+        momentum_(momentum),
+        books_(books) {}
+
+  /// As a step begins: the gaps that scripts left are theirs until loops are closed, or come no closer.
+  void see_whose_gaps();
 
   /// Schemes of order 4 and 5 hold loops inside their stages; others by hold(), a rule of order 2.
   bool in_stages() const;
@@ -27,8 +38,9 @@ class Loops {
   void leave_to_rows();
   /// Such a sub-step is over.
   void note_left();
-  /// Closes them by hand, as far as they can be closed.
-  void close();
+  /// Closes them by hand, as far as they can be closed and something pays for it.
+  /// @param by_rows  rows held them in this sub-step
+  void close(bool by_rows);
 
  private:
   double read_errors();
@@ -39,9 +51,21 @@ class Loops {
     double script = 0;          // the work of scripts' forces so far
   };
   Stored read_stored();
+  /// Loops that are being closed, and the energy, J, that this may give.
+  struct Closing {
+    bool open = false;    // by more than an integrator errs
+    bool theirs = false;  // as scripts left them, or stages that tore them
+    double rows = 0;      // of what rows took before
+    double motion = 0;    // of what motion pays for
+    double free = 0;      // so little of that is not taken from it
+  };
+  Closing begin_closing(bool by_rows);
+  double gap_of(const Tree& tree) const;
   bool touches() const;
-  bool approach(bool open);
-  bool pay_for_closing(const Stored& held);
+  bool carries() const;
+  bool approach(Closing& closing);
+  bool pay_for_closing(const Stored& held, Closing& closing);
+  bool pay_for_theirs(const Stored& held, const Stored& now);
   void close_velocities();
 
   State& state_;
@@ -49,6 +73,8 @@ class Loops {
   Rows& rows_;
   Positions& positions_;
   SmoothMotion& smooth_;
+  Momentum& momentum_;
+  Books& books_;
 };
 
 }  // namespace breve::island

@@ -125,8 +125,15 @@ bool Momentum::pushes_itself() const {
 double Momentum::moving(Payers payers) const {
   const bool held = touched_from_outside();
   double sum = paying_free_bodies(payers).inner;
-  for (const Clustered& one : state_.clusters) sum += inner_energy(one, held);
+  for (const Clustered& one : state_.clusters)
+    if (pays(one, payers)) sum += inner_energy(one, held);
   return std::max(sum, 0.0);  // links that stand still among one another may have less than nothing, by round-off
+}
+
+bool Momentum::pays(const Clustered& one, Payers payers) {
+  const std::span trees = one.entry->system->trees();
+  return payers != Payers::Looped ||
+         std::any_of(trees.begin(), trees.end(), [](const Tree* tree) { return !tree->loops.empty(); });
 }
 
 /// What bodies without joints may pay in an island of trees. A box that tips over a link that stands still, or slides
@@ -146,6 +153,7 @@ void Momentum::take_from_all(double part, Payers payers) {
     state_.result.ledger.contact_loss += part * free.inner;
   }
   for (const Clustered& one : state_.clusters) {
+    if (!pays(one, payers)) continue;
     const double taken = shorten(one, part, held);
     state_.result.ledger.contact_loss += taken;
     if (one.alone()) one.entry->system->trees().front()->ledger.contact_loss += taken;
@@ -163,6 +171,7 @@ void Momentum::undo_gain(double part, bool told, Payers payers) {
     if (told) state_.result.ledger.residual -= part * free.inner;
   }
   for (const Clustered& one : state_.clusters) {
+    if (!pays(one, payers)) continue;
     const double taken = shorten(one, part, held);
     if (!told) continue;
     state_.result.ledger.residual -= taken;

@@ -4,6 +4,8 @@
 // gravity give it.
 #pragma once
 
+#include <cstdint>
+
 #include "runtime/dynamics/common_motion.hpp"
 #include "runtime/dynamics/island_rows.hpp"
 
@@ -12,8 +14,9 @@ namespace breve::island {
 /// Whether a tree that nothing outside touches keeps its momenta when it is stopped.
 enum class Momenta : bool { Take, Keep };
 
-/// Whose motion pays for what contacts gave: trees' alone, or also that of the bodies without joints in their island.
-enum class Payers : bool { Trees, All };
+/// Whose motion pays for what was given: that of trees with closed loops, of all trees, or also of the bodies without
+/// joints in their island.
+enum class Payers : std::uint8_t { Looped, Trees, All };
 
 class Momentum {
  public:
@@ -47,6 +50,7 @@ class Momentum {
     Vector3 linear = Vector3::Zero(), angular = Vector3::Zero();
   };
   enum class Velocities : bool { Stay, Change };
+  static bool pays(const Clustered& one, Payers payers);
   double shorten(const Clustered& one, double part, bool held);
   Common paying_free_bodies(Payers payers) const;
   template <class Impulse>

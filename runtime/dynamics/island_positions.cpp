@@ -70,7 +70,7 @@ void Positions::push_apart(double h) {
   move_by_pushes(fastest, h, Rates::Stay);
   if (!state_.networks.empty()) shorten_winding(network_energy(state_) - stored, h);
   shorten_pushes(before, most, h);
-  pay_for_moves(-before.all - state_.result.ledger.contact_loss, true);
+  pay_for_moves(-before.all - state_.result.ledger.contact_loss, true, Payers::Trees);
 }
 
 /// Moves everything for h seconds by the velocities that pushes_ and scalar_pushes_ ask for. The solver solves the rows
@@ -424,15 +424,15 @@ void Positions::book_moves(double sign) {
   state_.result.ledger.contact_loss -= sign * sum;
 }
 
-void Positions::pay_for_moves(double given, bool by_contacts) {
+void Positions::pay_for_moves(double given, bool by_contacts, Payers payers) {
   if (state_.trees.empty() || !(given > 0)) return;
-  const double all = momentum_.moving(Payers::Trees);
+  const double all = momentum_.moving(payers);
   if (!(all > 0)) return;
   const double part = std::min(kFew, given / all);
   if (by_contacts)
-    momentum_.take_from_all(part, Payers::Trees);
+    momentum_.take_from_all(part, payers);
   else
-    momentum_.undo_gain(part, false, Payers::Trees);
+    momentum_.undo_gain(part, false, payers);
 }
 
 /// The same for links that scripts push, since note_pushed().

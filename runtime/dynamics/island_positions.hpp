@@ -33,11 +33,11 @@ class Positions {
   void end_moves(double h, Rates rates = Rates::Stay);
   /// Takes h seconds of the last motion back from the trees.
   void move_back(double h);
-  /// The energy, J, that a motion may give because motion pays for it.
+  /// The energy, J, that a motion may give because the motion of trees pays for it.
   double payable_by_motion() const;
   /// What moving positions gave, J, is taken from what moves, as far as that is little of it.
   /// @param by_contacts  it was booked as given by contacts, and so is what is taken
-  void pay_for_moves(double given, bool by_contacts);
+  void pay_for_moves(double given, bool by_contacts, Payers payers);
 
  private:
   double put_back_once(double h, bool struck, Rates rates);

@@ -201,7 +201,7 @@ void SubStep::put_right(double h) {
   const double before = state_.result.ledger.contact_loss;
   positions_.push_apart(h);
   books_.settle_pushes(before - state_.result.ledger.contact_loss);
-  loops_.close();
+  loops_.close(by_rows_);
   if (by_rows_) books_.take_gain();
   books_.settle_motors(h);
 }

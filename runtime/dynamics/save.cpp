@@ -175,6 +175,7 @@ void Dynamics::Core::save_tree(ByteWriter& out, const Tree& tree) const {
   out.put(tree.fastest);
   out.put(tree.credit);
   out.put(tree.set_apart);
+  out.put(tree.set_open);
   out.put(tree.changed);
   each(Writer{out}, tree.ledger);
   put_numbers(out, tree.state.q);
@@ -269,6 +270,7 @@ void Dynamics::Core::load_tree(ByteReader& in, Tree& tree) {
   tree.fastest = std::max(0.0, in.get<double>());
   tree.credit = std::max(0.0, in.get<double>());
   tree.set_apart = in.get_bool();
+  tree.set_open = std::max(0.0, in.get<double>());
   tree.changed = in.get_bool();
   each(Reader{in}, tree.ledger);
   for (double& x : tree.state.q) x = in.get<double>();
@@ -310,6 +312,7 @@ void Dynamics::Core::hash(Hasher& hasher) const {
     add(tree.fastest);
     add(tree.credit);
     add(tree.set_apart);
+    add(tree.set_open);
     for (const double x : tree.state.q) add(x);
     for (const double x : tree.state.v) add(x);
     for (const double x : tree.mean) add(x);

@@ -134,6 +134,9 @@ struct Tree : InMemory {
   double fastest = 0;     // J, the largest energy of motion with which a step began
   double credit = 0;      // J, that contacts took and may give back by lifting links out of overlaps
   bool set_apart = true;  // scripts have placed links since nothing overlapped: the overlaps are theirs
+  // How far its loops stood open, rad or length units, as the last step began, where scripts left them open; 0: the
+  // gaps are the solver's.
+  double set_open = JointDrive::kNoLimit;
 
   BodyIndex first_body() const {  // of the lowest index
     BodyIndex first = kNoBody;

@@ -419,6 +419,7 @@ void Dynamics::Core::place_links(Tree& tree) {
   articulated::forward_kinematics(tree.model, tree.data, tree.state);
   write_back(tree);
   tree.changed = tree.set_apart = true;
+  tree.set_open = JointDrive::kNoLimit;
 }
 
 void Dynamics::Core::write_back(Tree& tree) {

@@ -11,7 +11,7 @@ namespace breve {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'b', 'r', 'e', 'v', 'e', 'i', 'm', 'g'};
-constexpr std::uint32_t kVersion = 20;  // grows with every change of what follows the header
+constexpr std::uint32_t kVersion = 21;  // grows with every change of what follows the header
 
 std::uint64_t checksum(const std::uint8_t* data, std::size_t size) {
   Hasher hasher;
