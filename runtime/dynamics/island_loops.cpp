@@ -194,8 +194,9 @@ bool Loops::pay_for_closing(const Stored& held, Closing& closing) {
   if (closing.theirs) return pay_for_theirs(held, now);
   const double given = now.all - held.all - (now.script - held.script);
   if (given > closing.rows + closing.motion) return false;
-  if (touches()) state_.result.ledger.contact_loss -= now.all - held.all;
   const double by_motion = std::max(0.0, given - closing.rows);
+  // Contacts gave nothing that motion pays for.
+  if (touches()) state_.result.ledger.contact_loss -= now.all - held.all - by_motion;
   closing.rows = std::max(0.0, closing.rows - given);
   closing.motion -= by_motion;
   if (by_motion > closing.free) positions_.pay_for_moves(by_motion, false, Payers::Looped);
