@@ -115,12 +115,19 @@ double Books::taken() {
   return smooth_stored_ - now;
 }
 
-double Books::payable(bool by_rows) {
-  // Links may have given it to bodies without joints, to motors or to scripts' forces instead.
-  if (kept_)
-    return std::max(0.0, std::min(taken(), smooth_all_ - stored_energy(state_)) +
-                             std::min(0.0, works_of(state_.result.ledger) - smooth_done_));
-  return by_rows ? std::max(0.0, -missing(stored_energy(state_) - stored_, ledger_, state_.result.ledger)) : 0;
+Given Books::payable(bool by_rows) {
+  const double now = stored_energy(state_);
+  if (!kept_) {
+    const double left = by_rows ? std::max(0.0, -missing(now - stored_, ledger_, state_.result.ledger)) : 0;
+    return {left, left};
+  }
+  // Links may have given it to bodies without joints, to motors or to scripts' forces instead, and the error of smooth
+  // motion to links: of that, springs are given nothing, since no motion pays it back.
+  const Energy& ledger = state_.result.ledger;
+  const double by_rows_alone = std::min(taken(), smooth_all_ - now) + std::min(0.0, works_of(ledger) - smooth_done_);
+  const double in_all = sub_start_.stored + works_of(ledger) - works_of(sub_start_.ledger) - ledger.drag_loss +
+                        sub_start_.ledger.drag_loss - now;
+  return {std::max(0.0, by_rows_alone), std::max(0.0, std::min(by_rows_alone, in_all))};
 }
 
 bool Books::only_motors() const { return rows_.contacts() == 0 && rows_.limits() == 0; }

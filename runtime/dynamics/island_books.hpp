@@ -46,7 +46,7 @@ class Books {
   double taken();
   /// Of that, and of what rows of loops took in a sub-step without others, what closing loops by hand may give back.
   /// @param by_rows  rows hold the loops in this sub-step
-  double payable(bool by_rows);
+  Given payable(bool by_rows);
   double smooth_kinetic() const { return sub_start_.smooth_kinetic; }
   double predicted() const { return sub_start_.predicted; }
   void set_predicted(double energy) { sub_start_.predicted = energy; }

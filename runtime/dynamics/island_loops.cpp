@@ -137,7 +137,9 @@ Loops::Closing Loops::begin_closing(bool by_rows) {
   closing.theirs = torn || std::any_of(state_.trees.begin(), state_.trees.end(),
                                        [](const Tree* tree) { return !tree->loops.empty() && tree->set_open > 0; });
   if (closing.theirs) return closing;
-  closing.rows = books_.payable(by_rows) + kUnseen * weight(state_);
+  closing.rows = books_.payable(by_rows);
+  closing.rows.all += kUnseen * weight(state_);
+  closing.rows.springs += kUnseen * weight(state_);
   if (carries()) return closing;
   constexpr double kErred = 1e-7;  // of the motion: an integrator errs by as much, to both sides
   const double moving = momentum_.moving(Payers::Looped);
@@ -193,11 +195,13 @@ bool Loops::pay_for_closing(const Stored& held, Closing& closing) {
   const Stored now = read_stored();
   if (closing.theirs) return pay_for_theirs(held, now);
   const double given = now.all - held.all - (now.script - held.script);
-  if (given > closing.rows + closing.motion) return false;
-  const double by_motion = std::max(0.0, given - closing.rows);
+  const double to_springs = now.springs - held.springs;
+  if (given > closing.rows.all + closing.motion || to_springs > closing.rows.springs + closing.motion) return false;
+  const double by_motion = std::max(0.0, given - closing.rows.all);
   // Contacts gave nothing that motion pays for.
   if (touches()) state_.result.ledger.contact_loss -= now.all - held.all - by_motion;
-  closing.rows = std::max(0.0, closing.rows - given);
+  closing.rows.all = std::max(0.0, closing.rows.all - given);
+  closing.rows.springs = std::max(0.0, closing.rows.springs - to_springs);
   closing.motion -= by_motion;
   if (by_motion > closing.free) positions_.pay_for_moves(by_motion, false, Payers::Looped);
   return true;
@@ -261,13 +265,15 @@ Loops::Stored Loops::read_stored() {
   Stored sum;
   sum.script = state_.result.ledger.script_work;
   for (const Clustered& one : state_.clusters) {
-    sum.inner += spring_energy(state_, one);
+    sum.springs += spring_energy(state_, one);
     for (const std::uint32_t index : one.entry->trees) {
       const Energy energy = state_.core.energy_of(*state_.core.trees[index]);
-      sum.inner += energy.kinetic + energy.springs;
+      sum.springs += energy.springs;
+      sum.inner += energy.kinetic;
       sum.all += energy.potential;
     }
   }
+  sum.inner += sum.springs;
   sum.all += sum.inner;
   return sum;
 }

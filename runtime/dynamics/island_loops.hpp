@@ -48,6 +48,7 @@ class Loops {
   /// Energy, J. The inner part of a body could grow by drawing it together even where nothing outside touches it.
   struct Stored {
     double inner = 0, all = 0;  // motion and springs; also gravity
+    double springs = 0;         // alone
     double script = 0;          // the work of scripts' forces so far
   };
   Stored read_stored();
@@ -55,7 +56,7 @@ class Loops {
   struct Closing {
     bool open = false;    // by more than an integrator errs
     bool theirs = false;  // as scripts left them, or stages that tore them
-    double rows = 0;      // of what rows took before
+    Given rows;           // of what rows took before
     double motion = 0;    // of what motion pays for
     double free = 0;      // so little of that is not taken from it
   };

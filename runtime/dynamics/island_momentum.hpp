@@ -14,6 +14,12 @@ namespace breve::island {
 /// Whether a tree that nothing outside touches keeps its momenta when it is stopped.
 enum class Momenta : bool { Take, Keep };
 
+/// What moving positions gives, J.
+struct Given {
+  double all = 0;
+  double springs = 0;  // of that, to springs of trees and between trees
+};
+
 /// Whose motion pays for what was given: that of trees with closed loops, of all trees, or also of the bodies without
 /// joints in their island.
 enum class Payers : std::uint8_t { Looped, Trees, All };

@@ -10,12 +10,6 @@ namespace breve::island {
 /// Of joints where positions are moved: they stay, or links keep their momenta where rates would gain by that.
 enum class Rates { Stay, Carried };
 
-/// What moving positions gives, J.
-struct Given {
-  double all = 0;
-  double springs = 0;  // of that, to springs of trees and between trees
-};
-
 class Positions {
  public:
   Positions(State& state, Contacts& contacts, Rows& rows, Momentum& momentum, Credit& credit);
