@@ -132,7 +132,7 @@ Loops::Closing Loops::begin_closing(bool by_rows) {
   constexpr double kUnseen = 1e-9;  // of weight(): the round-off of links that lie still
   Closing closing;
   closing.open = stand_open();
-  // The guard sees what stages gain that tear a loop open: finer ones do not.
+  // What stages gain that tear a loop open is left to the guard: finer ones do not tear it.
   const bool torn = closing.open && !by_rows;
   closing.theirs = torn || std::any_of(state_.trees.begin(), state_.trees.end(),
                                        [](const Tree* tree) { return !tree->loops.empty() && tree->set_open > 0; });
